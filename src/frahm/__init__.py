@@ -1,0 +1,45 @@
+"""frahm designs nonlinear energy sinks against vortex-induced vibration of pipes, and proves that the design is safe."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+__version__ = "0.1.0"
+
+# Public name -> room. Rooms are imported on first use, so that `import frahm` and `frahm --help` stay quick.
+_PUBLIC = {
+    "Case": "frahm.case",
+    "load_case": "frahm.case",
+    "ParameterError": "frahm.errors",
+    "ConvergenceError": "frahm.errors",
+    "Outcome": "frahm.errors",
+    "Cubic": "frahm.absorbers",
+    "Linear": "frahm.absorbers",
+    "Polynomial": "frahm.absorbers",
+    "Element": "frahm.systems",
+    "System": "frahm.systems",
+    "build_system": "frahm.systems",
+    "integrate": "frahm.time_integration",
+    "TimeHistory": "frahm.time_integration",
+    "frequency_response": "frahm.response",
+    "ResponseCurve": "frahm.response",
+    "slow_flow_map": "frahm.response",
+    "stability_boundaries": "frahm.response",
+}
+
+__all__ = ["__version__", *_PUBLIC]
+
+
+def __getattr__(name: str) -> Any:
+    try:
+        room = _PUBLIC[name]
+    except KeyError:
+        raise AttributeError(f"module 'frahm' has no attribute {name!r}") from None
+    value = getattr(importlib.import_module(room), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,0 +1,44 @@
+"""Small helpers for arrays and labelled data."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from frahm.errors import ParameterError
+
+Floats = NDArray[np.float64]
+Complexes = NDArray[np.complex128]
+
+
+def frozen(values: ArrayLike, dtype: Any = float) -> NDArray[Any]:
+    """Read-only contiguous copy of `values`."""
+    array = np.array(values, dtype=dtype, order="C")
+    array.flags.writeable = False
+    return array
+
+
+def finite_array(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Floats:
+    """Read-only float array of the given shape (``-1`` matches any length), all entries finite."""
+    wanted = " x ".join("n" if length < 0 else str(length) for length in shape)
+    allowed = f"a finite real array of shape ({wanted})"
+    try:
+        raw = np.asarray(values)
+        array = np.array(raw, dtype=float)
+    except (TypeError, ValueError):
+        raise ParameterError(name, values, allowed) from None
+    if raw.dtype.kind in "USOMmb" or (raw.dtype.kind == "c" and np.any(raw.imag)):
+        raise ParameterError(name, values, allowed)
+    if array.ndim != len(shape) or any(want not in (-1, got) for want, got in zip(shape, array.shape, strict=True)):
+        raise ParameterError(name, f"shape {array.shape}", allowed)
+    if not np.all(np.isfinite(array)):
+        raise ParameterError(name, values, allowed)
+    array.flags.writeable = False
+    return array
+
+
+def labelled(dims: str | tuple[str, ...], data: ArrayLike, long_name: str, units: str, **more: Any) -> tuple[Any, ...]:
+    """One variable of an `xarray.Dataset`: every variable says what it is and in which unit."""
+    return dims, np.asarray(data), {"long_name": long_name, "units": units, **more}

@@ -1,0 +1,111 @@
+"""What can go wrong, said once and clearly."""
+
+from __future__ import annotations
+
+import difflib
+import enum
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+
+class ParameterError(ValueError):
+    """Bad input: which parameter, what was given, what is allowed.
+
+    Parameters
+    ----------
+    name : str
+        Name of the parameter, or the path of the field in a case file.
+    value : object
+        What was given.
+    allowed : str
+        What is allowed, as the end of the sentence "allowed: ...".
+    where : str, optional
+        File, or file and line, the value came from.
+    hint : str, optional
+        Nearest valid name or another way out.
+    """
+
+    def __init__(self, name: str, value: Any, allowed: str, *, where: str | None = None, hint: str | None = None):
+        self.name, self.value, self.allowed, self.where, self.hint = name, value, allowed, where, hint
+        given = repr(value)
+        given = given if len(given) <= 80 else given[:77] + "..."
+        message = f"{name}: given {given}; allowed: {allowed}"
+        message = f"{where}: {message}" if where else message
+        super().__init__(f"{message}. {hint}" if hint else message)
+
+
+class ConvergenceError(RuntimeError):
+    """A numerical method gave up and the caller asked for an exception (``throw=True``)."""
+
+
+class Outcome(enum.Enum):
+    """How a computation ended; the value is the sentence a user reads."""
+
+    DONE = "Finished."
+    DIVERGED = "The motion left every bound; the last finite state is kept."
+    STEP_LIMIT = "The step limit was reached before the end of the interval; what was computed is kept."
+    STEP_TOO_SMALL = "The step size fell below the resolution of the clock; what was computed is kept."
+    NOT_CONVERGED = "The iteration did not reach its tolerance; the last iterate is kept."
+    NOT_FINITE = "A value became infinite or undefined; what was computed before is kept."
+    WINDOW_LEFT = "The branch left the window and did not come back within the margin searched."
+    CLOSED = "The branch is a closed curve."
+    INTERRUPTED = "Interrupted; what was finished is kept."
+
+    @property
+    def ok(self) -> bool:
+        """Whether the result can be used as it is."""
+        return self in (Outcome.DONE, Outcome.WINDOW_LEFT, Outcome.CLOSED)
+
+
+def nearest(name: str, choices: Iterable[str]) -> str | None:
+    """Valid name most like `name`, or None."""
+    found = difflib.get_close_matches(name, list(choices), n=1, cutoff=0.6)
+    return found[0] if found else None
+
+
+def check_choice(name: str, value: Any, choices: Sequence[str]) -> str:
+    """Return `value` if it is one of `choices`, otherwise raise with the nearest one named."""
+    if isinstance(value, str) and value in choices:
+        return value
+    near = nearest(value, choices) if isinstance(value, str) else None
+    raise ParameterError(
+        name, value, "one of " + ", ".join(choices), hint=f"Did you mean {near!r}?" if near else None
+    )
+
+
+def check_number(
+    name: str,
+    value: Any,
+    *,
+    above: float = -math.inf,
+    at_least: float = -math.inf,
+    below: float = math.inf,
+    at_most: float = math.inf,
+    unit: str = "",
+) -> float:
+    """Return `value` as a float inside its bounds; text, NaN and infinity are refused."""
+    bounds = [
+        f"{sign} {bound:g}"
+        for sign, bound in ((">", above), (">=", at_least), ("<", below), ("<=", at_most))
+        if math.isfinite(bound)
+    ]
+    allowed = "a finite number" + (f" [{unit}]" if unit else "") + (" " + " and ".join(bounds) if bounds else "")
+    if isinstance(value, bool | str | bytes):
+        raise ParameterError(name, value, allowed)
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ParameterError(name, value, allowed) from None
+    if not (math.isfinite(number) and above < number < below and at_least <= number <= at_most):
+        raise ParameterError(name, value, allowed)
+    return number
+
+
+def check_count(name: str, value: Any, *, at_least: int = 1, at_most: int = 2**31 - 1) -> int:
+    """Return `value` as an integer inside its bounds."""
+    allowed = f"a whole number >= {at_least} and <= {at_most}"
+    number = check_number(name, value)
+    if number != int(number) or not at_least <= number <= at_most:
+        raise ParameterError(name, value, allowed)
+    return int(number)
