@@ -1,0 +1,24 @@
+"""Room `case`: the input, as models of pipe, wind, absorbers and analysis; files in and out."""
+
+from frahm.case.case import Case
+from frahm.case.fields import FieldFacts, field_table
+from frahm.case.loading import builtin_names, builtin_text, load_case
+from frahm.case.schema import case_schema
+from frahm.case.sections import Absorber, Analysis, CubicLaw, LinearLaw, Pipe, PolynomialLaw, Wind
+
+__all__ = [
+    "Absorber",
+    "Analysis",
+    "Case",
+    "CubicLaw",
+    "FieldFacts",
+    "LinearLaw",
+    "Pipe",
+    "PolynomialLaw",
+    "Wind",
+    "builtin_names",
+    "builtin_text",
+    "case_schema",
+    "field_table",
+    "load_case",
+]

@@ -1,0 +1,191 @@
+"""The input of every analysis: one frozen `Case`."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, ValidationError, field_validator, model_validator
+
+from frahm.case.problems import parameter_error
+from frahm.case.quantities import Label, refusal
+from frahm.case.sections import Absorber, Analysis, Pipe, Section, Wind
+from frahm.errors import ParameterError, check_count, check_number, nearest
+
+
+class Case(Section):
+    """A pipe in the wind, its absorbers, and what is to be computed. SI units, frequencies in rad/s.
+
+    Raises
+    ------
+    ParameterError
+        Naming the field, what was given and what is allowed.
+    """
+
+    name: Annotated[str, Label(shortest=1, longest=60)] = Field(
+        default="case", title="Name of the case", description="Short name for files and figures."
+    )
+    title: Annotated[str, Label()] = Field(
+        default="", title="Title of the case", description="One line that says what the case is."
+    )
+    pipe: Pipe = Field(title="Pipe", description="The pipe as one mode of vibration.")
+    wind: Wind = Field(title="Wind", description="The wind that sheds vortices from the pipe.")
+    absorbers: tuple[Absorber, ...] = Field(
+        default=(), title="Absorbers", description="Masses on the pipe; none is allowed."
+    )
+    analysis: Analysis = Field(default=Analysis(), title="Analysis", description="What is computed for the case.")
+
+    def __init__(self, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise parameter_error(error, type(self)) from error
+
+    @field_validator("absorbers", "analysis", mode="before")
+    @classmethod
+    def _empty_section(cls, value: Any, info: Any) -> Any:
+        empty: dict[str, Any] = {"absorbers": (), "analysis": {}}
+        return empty[info.field_name] if value is None else value
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Case:
+        lowest, omega = self.analysis.detuning[0], self.pipe.frequency
+        if lowest <= -omega:
+            allowed = f"more than -{omega:g} rad/s, where the excitation frequency is zero"
+            raise refusal(allowed, path="analysis.detuning[0]", value=lowest)
+        names = [absorber.name for absorber in self.absorbers]
+        for index, name in enumerate(names):
+            if name in names[:index]:
+                raise refusal("a name no other absorber has", path=f"absorbers[{index}].name", value=name)
+        return self
+
+    def with_pipe(self, **changes: Any) -> Case:
+        """Case with other values of the pipe, such as ``frequency="0.8 Hz"``; what is not named stays."""
+        return self._with_section("pipe", changes)
+
+    def with_wind(self, **changes: Any) -> Case:
+        """Case with other values of the wind, such as ``speed=2.7`` [m/s]; what is not named stays."""
+        return self._with_section("wind", changes)
+
+    def with_analysis(self, **changes: Any) -> Case:
+        """Case with other settings of the analysis, such as ``seed=2``; what is not named stays."""
+        return self._with_section("analysis", changes)
+
+    def with_name(self, name: str, title: str | None = None) -> Case:
+        """Case under another name, and another title if one is given."""
+        return self._with({"name": name} | ({} if title is None else {"title": title}))
+
+    def without_absorbers(self) -> Case:
+        """Case with the bare pipe."""
+        return self._with({"absorbers": ()})
+
+    def with_absorber(
+        self,
+        *,
+        kappa: float | None = None,
+        xi2: float | None = None,
+        rho2: float | None = None,
+        name: str | None = None,
+        index: int | None = None,
+    ) -> Case:
+        """Case with another absorber, given by values normalised by the mass of the pipe; what is not named stays.
+
+        Parameters
+        ----------
+        kappa : float, optional
+            Cubic stiffness over mass of the pipe [1/(m^2 s^2)]; makes the law cubic if it was not.
+        xi2 : float, optional
+            Damping over mass of the pipe [1/s].
+        rho2 : float, optional
+            Mass of the absorber over mass of the pipe [-].
+        name, index : str, int, optional
+            Which absorber: by name or by position; by default the first. If the case has none, a cubic sink is
+            added, and all three values are needed.
+
+        Returns
+        -------
+        Case
+            A new case; this one is left as it is.
+
+        Raises
+        ------
+        ParameterError
+            If a value is out of bounds, there is no such absorber, or a value is missing for a new one.
+        """
+        given = {"kappa": kappa, "xi2": xi2, "rho2": rho2}
+        unit = {"kappa": "1/(m^2 s^2)", "xi2": "1/s", "rho2": "-"}
+        host = self.pipe.mass
+        si = {key: host * check_number(key, value, at_least=0, unit=unit[key])
+              for key, value in given.items() if value is not None}  # fmt: skip
+        if rho2 is not None:
+            check_number("rho2", rho2, above=0)
+        if not self.absorbers:
+            for key in given:
+                if key not in si:
+                    raise ParameterError(key, None, f"a number [{unit[key]}], because the case has no absorber yet")
+            which, old = 0, None
+        else:
+            which = self._position(name, index)
+            old = self.absorbers[which]
+        new = _changed(old, si.get("kappa"), si.get("xi2"), si.get("rho2"), name)
+        return self._with({"absorbers": (*self.absorbers[:which], new, *self.absorbers[which + 1 :])})
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain dictionary with every field in SI units; `load_case` gives an equal case back."""
+        return self.model_dump(mode="json")
+
+    def to_yaml(self, path: str | Path | None = None) -> str:
+        """YAML text with every field in SI units, also written to `path` if one is given.
+
+        The file appears complete or not at all; `load_case` gives an equal case back.
+        """
+        from frahm.case.yaml_text import yaml_text
+        from frahm.files import write_text
+
+        text = yaml_text(self.to_dict())
+        if path is not None:
+            write_text(path, text)
+        return text
+
+    @property
+    def digest(self) -> str:
+        """SHA-256 of the content: equal cases have equal digests, on every machine."""
+        canonical = json.dumps(self.to_dict(), sort_keys=True, separators=(",", ":"), allow_nan=False)
+        return hashlib.sha256(canonical.encode()).hexdigest()
+
+    def _with(self, changes: dict[str, Any]) -> Case:
+        return type(self)(**{name: getattr(self, name) for name in self.model_fields_set} | changes)
+
+    def _with_section(self, section: str, changes: dict[str, Any]) -> Case:
+        old = getattr(self, section)
+        return self._with({section: {name: getattr(old, name) for name in old.model_fields_set} | changes})
+
+    def _position(self, name: str | None, index: int | None) -> int:
+        names = [absorber.name for absorber in self.absorbers]
+        if name is not None and index is not None:
+            raise ParameterError("name, index", (name, index), "at most one of the two")
+        if name is not None:
+            if name not in names:
+                near = nearest(str(name), names)
+                hint = f"Did you mean {near!r}?" if near else None
+                raise ParameterError("name", name, "one of " + ", ".join(names), hint=hint)
+            return names.index(name)
+        return check_count("index", 0 if index is None else index, at_least=0, at_most=len(names) - 1)
+
+
+def _changed(
+    old: Absorber | None, stiffness: float | None, damping: float | None, mass: float | None, name: str | None
+) -> dict[str, Any]:
+    """Fields of an absorber, with the values given in SI units in place of the old ones."""
+    if old is None:
+        law = {"kind": "cubic", "stiffness": stiffness, "damping": damping}
+        return {"mass": mass, "law": law} | ({} if name is None else {"name": name})
+    kept = {key: getattr(old, key) for key in old.model_fields_set}
+    law = old.law.model_dump()
+    if stiffness is not None:
+        law = {"kind": "cubic", "stiffness": stiffness, "damping": old.law.damping}
+    if damping is not None:
+        law["damping"] = damping
+    return kept | {"law": law} | ({} if mass is None else {"mass": mass})

@@ -1,0 +1,121 @@
+"""From the findings of the validation to one message a user can act on."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from frahm.case.fields import FieldFacts, children, field_table
+from frahm.errors import ParameterError, nearest
+
+_SHOWN = 5
+Where = Callable[[str], str | None]
+
+
+class _Nothing:
+    def __repr__(self) -> str:
+        return "nothing"
+
+
+def parameter_error(error: ValidationError, model: type[BaseModel], where: Where | None = None) -> ParameterError:
+    """Return the first problem as a `ParameterError`; further ones follow in its hint, a line each.
+
+    Parameters
+    ----------
+    error : ValidationError
+        What the validation found.
+    model : type of BaseModel
+        The model that was validated.
+    where : callable, optional
+        File and line of a field path.
+
+    Returns
+    -------
+    ParameterError
+        With the path of the field, the value given and what is allowed.
+    """
+    found = error.errors(include_url=False)
+    unknown = [entry for entry in found if entry["type"] == "extra_forbidden"]
+    meant = {_table_path(entry["loc"][:-1], near) for entry in unknown if (near := _near(entry["loc"], model))}
+    rest = [entry for entry in found if entry not in unknown and _key(entry["loc"]) not in meant]
+    problems = [_problem(entry, model, where) for entry in [*unknown, *rest]]
+    first, others = problems[0], problems[1:]
+    if not others:
+        return first
+    more = [f"Also: {other}" for other in others[:_SHOWN]]
+    more += [f"And {len(others) - _SHOWN} more."] if len(others) > _SHOWN else []
+    hint = "\n".join([*([first.hint] if first.hint else []), *more])
+    return ParameterError(first.name, first.value, first.allowed, where=first.where, hint=hint)
+
+
+def field_path(loc: Sequence[int | str], kinds: Sequence[str] = ("cubic", "linear", "polynomial")) -> str:
+    """Path as a user writes it: absorbers[0].law.stiffness."""
+    parts = [part for i, part in enumerate(loc) if not (part in kinds and i and loc[i - 1] == "law")]
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in parts).lstrip(".")
+
+
+def _key(loc: Sequence[int | str]) -> str:
+    """Path in the table of fields: absorbers[].law(cubic).stiffness."""
+    path = ""
+    for i, part in enumerate(loc):
+        if isinstance(part, int):
+            path += "[]"
+        elif i and loc[i - 1] == "law" and i + 1 < len(loc):
+            path += f"({part})"
+        else:
+            path += f".{part}"
+    return path.lstrip(".")
+
+
+def _table_path(parent: Sequence[int | str], name: str) -> str:
+    return _key([*parent, name])
+
+
+def _near(loc: Sequence[int | str], model: type[BaseModel]) -> str | None:
+    return nearest(str(loc[-1]), _siblings(loc, model))
+
+
+def _siblings(loc: Sequence[int | str], model: type[BaseModel]) -> list[str]:
+    parent = _key(loc)[: -len(str(loc[-1]))].rstrip(".")
+    return children(model, parent)
+
+
+def _problem(entry: Mapping[str, Any], model: type[BaseModel], where: Where | None) -> ParameterError:
+    loc, context = entry["loc"], entry.get("ctx", {})
+    path, value, hint = field_path(loc), entry.get("input"), None
+    facts = _facts_at(loc, model)
+    if entry["type"] == "parameter":
+        path, allowed, hint = context["path"] or path, context["allowed"], context["hint"]
+        value = context["given"] if context["path"] else value
+    elif entry["type"] == "extra_forbidden":
+        near = _near(loc, model)
+        allowed = "no such field here, only " + ", ".join(_siblings(loc, model))
+        hint = f"Did you mean {near!r}?" if near else None
+    elif entry["type"] == "missing":
+        value, allowed = _Nothing(), f"{facts.allowed} (required)" if facts else "a value (required)"
+    elif entry["type"] in ("union_tag_invalid", "union_tag_not_found"):
+        return _wrong_kind(path, value, context, where)
+    else:
+        allowed = facts.allowed if facts else entry["msg"]
+    return ParameterError(path or "case", value, allowed, where=where(path) if where else None, hint=hint)
+
+
+def _wrong_kind(path: str, value: Any, context: Mapping[str, Any], where: Where | None) -> ParameterError:
+    kinds = re.findall(r"'(\w+)'", context.get("expected_tags", "")) or ["cubic", "linear", "polynomial"]
+    given = value.get("kind", _Nothing()) if isinstance(value, dict) else _Nothing()
+    near = nearest(given, kinds) if isinstance(given, str) else None
+    path = f"{path}.kind"
+    hint = f"Did you mean {near!r}?" if near else None
+    return ParameterError(path, given, "one of " + ", ".join(kinds), where=where(path) if where else None, hint=hint)
+
+
+def _facts_at(loc: Sequence[int | str], model: type[BaseModel]) -> FieldFacts | None:
+    table, key = field_table(model), _key(loc)
+    facts = table.get(key) or table.get(key.removesuffix("[]"))
+    if facts and key.endswith("[]"):
+        return dataclasses.replace(facts, allowed=facts.allowed.replace("a list of mappings", "a mapping"))
+    return facts

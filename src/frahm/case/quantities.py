@@ -1,0 +1,217 @@
+"""Annotations of the fields of a case: the unit, the bounds, and how a value comes in."""
+
+from __future__ import annotations
+
+import math
+import unicodedata
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+
+from frahm.errors import ParameterError, check_count, check_number, nearest
+from frahm.units import si_value, with_unit
+
+_HIGHEST_POWER = 15
+_NOT_IN_A_LINE = ("Cc", "Cs", "Zl", "Zp")  # control characters, halves of a pair, line and paragraph separators
+
+
+def refusal(
+    allowed: str, *, hint: str | None = None, path: str | None = None, value: Any = None
+) -> PydanticCustomError:
+    """Return the error a validator raises; `path` and `value` name another field than the one validated."""
+    context = {"allowed": allowed, "hint": hint, "path": path, "given": value}
+    return PydanticCustomError("parameter", "{allowed}", context)
+
+
+@dataclass(frozen=True)
+class Door:
+    """How a field comes in; its subclasses say what is let in."""
+
+    @property
+    def unit(self) -> str:
+        """SI unit, empty where there is none."""
+        return ""
+
+    @property
+    def allowed(self) -> str:
+        """What is let in, as the end of the sentence "allowed: ..."."""
+        raise NotImplementedError
+
+    def read(self, value: Any) -> Any:
+        """Value as the case keeps it, or the refusal."""
+        raise NotImplementedError
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema of what is let in."""
+        raise NotImplementedError
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return self.json_schema()
+
+
+@dataclass(frozen=True)
+class Quantity(Door):
+    """A physical quantity: a finite number in the SI unit, or text with a unit.
+
+    Parameters
+    ----------
+    si : str
+        SI unit the case keeps; empty for a plain number [-].
+    symbol : str
+        Symbol in the formulas.
+    above, at_least, below, at_most : float
+        Bounds in the SI unit.
+    """
+
+    si: str
+    symbol: str = ""
+    above: float = -math.inf
+    at_least: float = -math.inf
+    below: float = math.inf
+    at_most: float = math.inf
+
+    @property
+    def unit(self) -> str:
+        """SI unit."""
+        return self.si
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return with_unit(self.si).replace("a number", "a finite number").replace("],", f"]{self._bounds},", 1)
+
+    @property
+    def _bounds(self) -> str:
+        pairs = ((">", self.above), (">=", self.at_least), ("<", self.below), ("<=", self.at_most))
+        named = [f"{sign} {bound:g}" for sign, bound in pairs if math.isfinite(bound)]
+        return " " + " and ".join(named) if named else ""
+
+    def read(self, value: Any) -> float:
+        """Value in the SI unit."""
+        try:
+            number = si_value(value, self.si) if isinstance(value, str) else value
+            limits = {"above": self.above, "at_least": self.at_least, "below": self.below, "at_most": self.at_most}
+            return check_number("value", number, **limits) + 0.0  # so that -0 and 0 are one case
+        except ParameterError as error:
+            raise refusal(self.allowed, hint=error.hint) from None
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema: the number with its bounds, or text with a unit."""
+        keys = {"exclusiveMinimum": self.above, "minimum": self.at_least}
+        keys |= {"exclusiveMaximum": self.below, "maximum": self.at_most}
+        number = {"type": "number"} | {key: bound for key, bound in keys.items() if math.isfinite(bound)}
+        text = {"type": "string", "pattern": r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*[^\s0-9].*$"}
+        more = {"symbol": self.symbol} if self.symbol else {}
+        return {"anyOf": [number, text], "unit": self.si or "-", **more}
+
+
+@dataclass(frozen=True)
+class Count(Door):
+    """A whole number, or one of a few words."""
+
+    at_least: int = 1
+    at_most: int = 2**31 - 1
+    words: tuple[str, ...] = ()
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        words = "".join(f", or {word!r}" for word in self.words)
+        return f"a whole number >= {self.at_least} and <= {self.at_most}{words}"
+
+    def read(self, value: Any) -> int | str:
+        """Value as an integer, or the word."""
+        if isinstance(value, str) and value in self.words:
+            return value
+        try:
+            return check_count("value", value, at_least=self.at_least, at_most=self.at_most)
+        except ParameterError:
+            raise refusal(self.allowed) from None
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema."""
+        number = {"type": "integer", "minimum": self.at_least, "maximum": self.at_most}
+        return {"anyOf": [number, {"enum": list(self.words)}]} if self.words else number
+
+
+@dataclass(frozen=True)
+class Label(Door):
+    """One line of text."""
+
+    shortest: int = 0
+    longest: int = 200
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return f"one line of text, {self.shortest} to {self.longest} characters"
+
+    def read(self, value: Any) -> str:
+        """Text without blanks around it."""
+        text = value.strip() if isinstance(value, str) else ""
+        broken = any(unicodedata.category(letter) in _NOT_IN_A_LINE for letter in text)
+        if not isinstance(value, str) or broken or not self.shortest <= len(text) <= self.longest:
+            raise refusal(self.allowed)
+        return text
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema."""
+        return {"type": "string", "minLength": self.shortest, "maxLength": self.longest}
+
+
+@dataclass(frozen=True)
+class Choice(Door):
+    """One of a few words."""
+
+    words: tuple[str, ...]
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return "one of " + ", ".join(self.words)
+
+    def read(self, value: Any) -> str:
+        """Return the word."""
+        if isinstance(value, str) and value in self.words:
+            return value
+        near = nearest(value, self.words) if isinstance(value, str) else None
+        raise refusal(self.allowed, hint=f"Did you mean {near!r}?" if near else None)
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema."""
+        return {"enum": list(self.words)}
+
+
+@dataclass(frozen=True)
+class Coefficients(Door):
+    """Coefficients of a spring polynomial: c_1 [N/m], c_2 [N/m^2], ... ."""
+
+    @property
+    def unit(self) -> str:
+        """SI units."""
+        return "N/m, N/m^2, ..."
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return f"a list of 1 to {_HIGHEST_POWER} finite numbers [N/m, N/m^2, ...], or texts with a unit"
+
+    def read(self, value: Any) -> tuple[float, ...]:
+        """Coefficients in SI units, from the linear one upwards."""
+        if not isinstance(value, list | tuple) or not 1 <= len(value) <= _HIGHEST_POWER:
+            raise refusal(self.allowed)
+        return tuple(_power(k).read(item) for k, item in enumerate(value, start=1))
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema."""
+        item = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+        return {"type": "array", "minItems": 1, "maxItems": _HIGHEST_POWER, "items": item, "unit": self.unit}
+
+
+def _power(k: int) -> Quantity:
+    return Quantity("N/m" if k == 1 else f"N/m^{k}", symbol=f"c_{k}")

@@ -1,0 +1,130 @@
+"""Vortex shedding from a pipe in the wind: Strouhal frequency and harmonic lift."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from frahm.case import Case
+from frahm.errors import check_number
+
+AIR_VISCOSITY = 1.5e-5  # kinematic viscosity of air near 20 degrees Celsius [m^2/s]
+
+
+def shedding_frequency(speed: float, diameter: float, strouhal: float) -> float:
+    """Angular frequency of vortex shedding, Omega = 2 pi St U / D [rad/s].
+
+    Parameters
+    ----------
+    speed : float
+        Wind speed U [m/s].
+    diameter : float
+        Outer diameter D [m].
+    strouhal : float
+        Strouhal number St [-].
+    """
+    D = check_number("diameter", diameter, above=0, unit="m")
+    St = check_number("strouhal", strouhal, above=0)
+    return 2 * math.pi * St * check_number("speed", speed, at_least=0, unit="m/s") / D
+
+
+def lift_amplitude(
+    speed: float, diameter: float, lift_coefficient: float, air_density: float = 1.225, length: float = 1.0
+) -> float:
+    """Amplitude of the harmonic lift, F_L = 1/2 C_L rho U^2 D l [N].
+
+    Parameters
+    ----------
+    speed : float
+        Wind speed U [m/s].
+    diameter : float
+        Outer diameter D [m].
+    lift_coefficient : float
+        Amplitude of the lift coefficient C_L [-].
+    air_density : float
+        rho [kg/m^3].
+    length : float
+        Length of pipe l the lift acts on, in phase all along [m].
+    """
+    U = check_number("speed", speed, at_least=0, unit="m/s")
+    D = check_number("diameter", diameter, above=0, unit="m")
+    CL = check_number("lift_coefficient", lift_coefficient, at_least=0)
+    rho = check_number("air_density", air_density, above=0, unit="kg/m^3")
+    return 0.5 * CL * rho * U**2 * D * check_number("length", length, above=0, unit="m")
+
+
+def reduced_velocity(speed: float, frequency: float, diameter: float) -> float:
+    """V_R = U / (f D) [-], with the natural frequency omega = 2 pi f given in rad/s.
+
+    Parameters
+    ----------
+    speed : float
+        Wind speed U [m/s].
+    frequency : float
+        Natural frequency omega [rad/s].
+    diameter : float
+        Outer diameter D [m].
+    """
+    omega = check_number("frequency", frequency, above=0, unit="rad/s")
+    D = check_number("diameter", diameter, above=0, unit="m")
+    return 2 * math.pi * check_number("speed", speed, at_least=0, unit="m/s") / (omega * D)
+
+
+def reynolds_number(speed: float, diameter: float, viscosity: float = AIR_VISCOSITY) -> float:
+    """Re = U D / nu [-].
+
+    Parameters
+    ----------
+    speed : float
+        Wind speed U [m/s].
+    diameter : float
+        Outer diameter D [m].
+    viscosity : float
+        Kinematic viscosity nu [m^2/s].
+    """
+    nu = check_number("viscosity", viscosity, above=0, unit="m^2/s")
+    D = check_number("diameter", diameter, above=0, unit="m")
+    return check_number("speed", speed, at_least=0, unit="m/s") * D / nu
+
+
+@dataclass(frozen=True)
+class VortexShedding:
+    """What the wind of a case does to its pipe.
+
+    Attributes
+    ----------
+    frequency : float
+        Shedding frequency Omega [rad/s].
+    detuning : float
+        Omega minus the natural frequency of the pipe [rad/s].
+    lift : float
+        Amplitude of the lift F_L on the length of pipe of the case [N].
+    reduced_velocity : float
+        U / (f D) [-].
+    reynolds_number : float
+        U D / nu [-].
+    """
+
+    frequency: float
+    detuning: float
+    lift: float
+    reduced_velocity: float
+    reynolds_number: float
+
+    @property
+    def frequency_hz(self) -> float:
+        """Shedding frequency [Hz]."""
+        return self.frequency / (2 * math.pi)
+
+
+def vortex_shedding(case: Case) -> VortexShedding:
+    """Frequency, lift and similarity numbers of a case."""
+    wind, pipe = case.wind, case.pipe
+    frequency = shedding_frequency(wind.speed, pipe.diameter, wind.strouhal)
+    return VortexShedding(
+        frequency=frequency,
+        detuning=frequency - pipe.frequency,
+        lift=lift_amplitude(wind.speed, pipe.diameter, wind.lift_coefficient, wind.air_density, pipe.length),
+        reduced_velocity=reduced_velocity(wind.speed, pipe.frequency, pipe.diameter),
+        reynolds_number=reynolds_number(wind.speed, pipe.diameter),
+    )
