@@ -67,7 +67,7 @@ def si_value(value: str, unit: str, *, name: str = "value") -> float:
 
 
 def with_unit(unit: str) -> str:
-    """What a field of the SI unit accepts, as the end of the sentence "allowed: ..."."""
+    """Say what a field of the SI unit accepts, as the end of the sentence "allowed: ..."."""
     known = _FAMILIAR.get(unit, (unit,))
     return f"a number [{unit or '-'}], or text with a unit such as {', '.join(known[:4])}"
 

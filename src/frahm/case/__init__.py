@@ -2,7 +2,7 @@
 
 from frahm.case.case import Case
 from frahm.case.fields import FieldFacts, field_table
-from frahm.case.loading import builtin_names, builtin_text, load_case
+from frahm.case.loading import builtin_names, builtin_text, load_case, template_text
 from frahm.case.schema import case_schema
 from frahm.case.sections import Absorber, Analysis, CubicLaw, LinearLaw, Pipe, PolynomialLaw, Wind
 
@@ -21,4 +21,5 @@ __all__ = [
     "case_schema",
     "field_table",
     "load_case",
+    "template_text",
 ]

@@ -14,10 +14,11 @@ from pydantic import ValidationError
 from frahm.case.case import Case
 from frahm.case.problems import parameter_error
 from frahm.case.toml_text import read_toml
-from frahm.case.yaml_text import TextError, read_yaml
+from frahm.case.yaml_text import TextError, read_yaml, yaml_text
 from frahm.errors import ParameterError, nearest
 
 _LARGEST = 256 * 1024
+_TEMPLATE = "jacket-pipe"
 _READERS: dict[str, Callable[[str], tuple[Any, dict[str, int]]]] = {
     ".yaml": read_yaml, ".yml": read_yaml, ".toml": read_toml,
 }  # fmt: skip
@@ -66,6 +67,13 @@ def builtin_text(name: str) -> str:
     if name not in builtin_names():
         raise ParameterError("case", name, "one of " + ", ".join(builtin_names()))
     return (resources.files("frahm.case") / "builtin" / f"{name}.yaml").read_text(encoding="utf-8")
+
+
+def template_text(name: str) -> str:
+    """Commented YAML text of a case to start from, under the name given."""
+    heading = yaml_text({"name": name, "title": "Say here in one line what the case is"}).rstrip("\n")
+    lines = builtin_text(_TEMPLATE).splitlines()
+    return "\n".join(heading if line.startswith("name:") else line for line in lines if line[:6] != "title:") + "\n"
 
 
 @functools.cache

@@ -95,8 +95,10 @@ class Quantity(Door):
         """Value in the SI unit."""
         try:
             number = si_value(value, self.si) if isinstance(value, str) else value
-            limits = {"above": self.above, "at_least": self.at_least, "below": self.below, "at_most": self.at_most}
-            return check_number("value", number, **limits) + 0.0  # so that -0 and 0 are one case
+            checked = check_number(
+                "value", number, above=self.above, at_least=self.at_least, below=self.below, at_most=self.at_most
+            )
+            return checked + 0.0  # so that -0 and 0 are one case
         except ParameterError as error:
             raise refusal(self.allowed, hint=error.hint) from None
 

@@ -10,6 +10,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
+_CORE = "tag:yaml.org,2002:"
 _MOST_NODES = 20_000
 _DEEPEST = 40
 _PLAIN = ("null", "bool", "int", "float", "str")
@@ -41,12 +42,11 @@ class _Reader:
             raise TextError("the aliases or lists of this file expand beyond what a case can hold", line)
         if isinstance(node, ScalarNode):
             return self.scalar(node)
-        kind = "map" if isinstance(node, MappingNode) else "seq"
-        if node.tag != f"tag:yaml.org,2002:{kind}":
-            raise TextError(f"the tag {_short(node.tag)} has no meaning in a case file", line)
-        if isinstance(node, SequenceNode):
+        if isinstance(node, MappingNode) and node.tag == f"{_CORE}map":
+            return self.mapping(node, path, depth)
+        if isinstance(node, SequenceNode) and node.tag == f"{_CORE}seq":
             return [self.build(item, f"{path}[{i}]", depth + 1) for i, item in enumerate(node.value)]
-        return self.mapping(node, path, depth)
+        raise TextError(f"the tag {_short(node.tag)} has no meaning in a case file", line)
 
     def mapping(self, node: MappingNode, path: str, depth: int) -> dict[str, Any]:
         data: dict[str, Any] = {}
@@ -63,7 +63,7 @@ class _Reader:
         return data
 
     def scalar(self, node: ScalarNode) -> Any:
-        line, kind = node.start_mark.line + 1, node.tag.removeprefix("tag:yaml.org,2002:")
+        line, kind = node.start_mark.line + 1, str(node.tag).removeprefix(_CORE)
         if kind in _AS_TEXT:
             return node.value
         if kind not in _PLAIN:
@@ -101,7 +101,7 @@ def read_yaml(text: str) -> tuple[Any, dict[str, int]]:
 
 def yaml_text(data: dict[str, Any]) -> str:
     """YAML 1.2 text of plain data, in the order given."""
-    yaml = _yaml()
+    yaml: Any = _yaml()
     yaml.default_flow_style = False
     yaml.allow_unicode = True
     yaml.sort_base_mapping_type_on_output = False
@@ -115,5 +115,6 @@ def _yaml() -> YAML:
     return YAML(typ="safe", pure=True)
 
 
-def _short(text: str) -> str:
+def _short(value: object) -> str:
+    text = str(value)
     return repr(text if len(text) <= 60 else text[:57] + "...")

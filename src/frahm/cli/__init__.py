@@ -1,5 +1,5 @@
 """Room `cli`: the command `frahm`."""
 
+from frahm.cli.app import app, main
 
-def main() -> None:
-    """Run the command line."""
+__all__ = ["app", "main"]

@@ -77,7 +77,7 @@ def as_system(case_or_system: Any) -> System:
 
 
 def _relative(coordinate: int, size: int) -> Floats:
-    """n with n.x = x_coordinate - x_0."""
+    """Direction n with n.x = x_coordinate - x_0."""
     direction = np.zeros(size)
     direction[0], direction[coordinate] = -1.0, 1.0
     return direction

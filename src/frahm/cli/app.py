@@ -1,0 +1,45 @@
+"""The command `frahm`: its commands live in modules of their own and are registered here."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+import frahm
+from frahm.cli import cases
+from frahm.cli.guarded import GuardedGroup
+
+app = typer.Typer(
+    name="frahm",
+    cls=GuardedGroup,
+    help="Design nonlinear energy sinks against vortex-induced vibration of pipes.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+# A command is a function in a module beside this one; what it needs beyond typer it imports when it is called.
+for command in (cases.check, cases.new, cases.cases, cases.schema):
+    app.command()(command)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"frahm {frahm.__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and end.")
+    ] = False,
+) -> None:
+    """Design nonlinear energy sinks against vortex-induced vibration of pipes."""
+
+
+def main() -> None:
+    """Run the command line."""
+    app()

@@ -1,0 +1,54 @@
+"""Commands that deal with case files: check, new, cases, schema."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+CaseArgument = Annotated[str, typer.Argument(metavar="CASE", help="Name of a built-in case, or a YAML or TOML file.")]
+
+
+def check(case: CaseArgument) -> None:
+    """Check a case and show what it says, in SI units."""
+    from frahm.case import load_case
+    from frahm.cli.summary import case_summary
+
+    typer.echo(case_summary(load_case(case)))
+
+
+def new(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Case file to write, ending in .yaml or .yml.")],
+    force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
+) -> None:
+    """Write a commented case file to start from."""
+    from frahm.case import template_text
+    from frahm.errors import ParameterError
+    from frahm.files import write_text
+
+    if file.suffix.lower() not in (".yaml", ".yml"):
+        raise ParameterError("FILE", str(file), "a file that ends in .yaml or .yml")
+    if file.exists() and (file.is_dir() or not force):
+        hint = "It is a directory." if file.is_dir() else "It exists; --force replaces it."
+        raise ParameterError("FILE", str(file), "a file that does not exist yet", hint=hint)
+    write_text(file, template_text(file.stem))
+    typer.echo(f"{file} written. Edit it, then: frahm check {file}")
+
+
+def cases() -> None:
+    """List the built-in cases."""
+    from frahm.case import builtin_names, load_case
+
+    width = max(map(len, builtin_names()))
+    for name in builtin_names():
+        typer.echo(f"{name:<{width}}  {load_case(name).title}")
+
+
+def schema() -> None:
+    """Print the JSON schema of a case file."""
+    import json
+
+    from frahm.case import case_schema
+
+    typer.echo(json.dumps(case_schema(), indent=2))

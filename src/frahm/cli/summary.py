@@ -1,0 +1,66 @@
+"""A case in a few lines, for people."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from pydantic import BaseModel
+
+from frahm.case import Case, field_table
+from frahm.loads import vortex_shedding
+
+
+def case_summary(case: Case) -> str:
+    """Return the fields of a case in SI units, the defaulted ones marked, and what follows from them."""
+    rows = list(_rows(case))
+    width = max(len(path) for path, _, _ in rows)
+    lines = [f"  {path:<{width}}  {text}{'   (default)' if default else ''}" for path, text, default in rows]
+    heading = f"{case.name}: {case.title}" if case.title else case.name
+    return "\n".join([heading, *lines, "", *_consequences(case), "", "The case is valid."])
+
+
+def _rows(case: Case) -> Iterator[tuple[str, str, bool]]:
+    for section in ("pipe", "wind"):
+        yield from _section_rows(getattr(case, section), section, section)
+    if not case.absorbers:
+        yield "absorbers", "none", "absorbers" not in case.model_fields_set
+    for i, absorber in enumerate(case.absorbers):
+        yield from _section_rows(absorber, f"absorbers[{i}]", "absorbers[]")
+        yield from _section_rows(absorber.law, f"absorbers[{i}].law", f"absorbers[].law({absorber.law.kind})")
+    yield from _section_rows(case.analysis, "analysis", "analysis")
+
+
+def _section_rows(section: BaseModel, path: str, key: str) -> Iterator[tuple[str, str, bool]]:
+    table = field_table(Case)
+    for name in type(section).model_fields:
+        value = getattr(section, name)
+        if not isinstance(value, BaseModel):
+            yield f"{path}.{name}", _text(value, table[f"{key}.{name}"].unit), name not in section.model_fields_set
+
+
+def _text(value: Any, unit: str) -> str:
+    if isinstance(value, tuple):
+        return "[" + ", ".join(f"{number:.6g}" for number in value) + "]" + (f" {unit}" if unit else "")
+    if isinstance(value, float):
+        in_hertz = f" = {value / (2 * math.pi):.6g} Hz" if unit == "rad/s" else ""
+        return f"{value:.6g}" + (f" {unit}" if unit else "") + in_hertz
+    return str(value)
+
+
+def _consequences(case: Case) -> list[str]:
+    shedding, pipe = vortex_shedding(case), case.pipe
+    lines = [
+        f"  vortices are shed at {shedding.frequency_hz:.4g} Hz, detuning {shedding.detuning:.4g} rad/s",
+        f"  lift amplitude {shedding.lift:.4g} N on {pipe.length:.4g} m of pipe",
+        f"  reduced velocity {shedding.reduced_velocity:.3g}, Reynolds number {shedding.reynolds_number:.3g}",
+    ]
+    damping = 2 * pipe.damping_ratio * pipe.mass * pipe.frequency
+    if damping:
+        lines.append(f"  resonant amplitude without absorbers {shedding.lift / (damping * pipe.frequency):.4g} m")
+    for absorber in case.absorbers:
+        values = absorber.normalised(pipe.mass)
+        named = ", ".join(f"{key} {values[key]:.6g}" for key in ("rho2", "kappa", "xi2") if key in values)
+        lines.append(f"  {absorber.name}, normalised by the mass of the pipe: {named}")
+    return lines
