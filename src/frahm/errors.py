@@ -69,9 +69,7 @@ def check_choice(name: str, value: Any, choices: Sequence[str]) -> str:
     if isinstance(value, str) and value in choices:
         return value
     near = nearest(value, choices) if isinstance(value, str) else None
-    raise ParameterError(
-        name, value, "one of " + ", ".join(choices), hint=f"Did you mean {near!r}?" if near else None
-    )
+    raise ParameterError(name, value, "one of " + ", ".join(choices), hint=f"Did you mean {near!r}?" if near else None)
 
 
 def check_number(

@@ -1,0 +1,14 @@
+"""Room `response`: one verb for the response curve, whatever the method, and maps of it."""
+
+from frahm.response.curve import Branch, ResponseCurve, SpecialPoint
+from frahm.response.frequency_response import frequency_response
+from frahm.response.maps import slow_flow_map, stability_boundaries
+
+__all__ = [
+    "Branch",
+    "ResponseCurve",
+    "SpecialPoint",
+    "frequency_response",
+    "slow_flow_map",
+    "stability_boundaries",
+]
