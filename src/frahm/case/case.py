@@ -37,7 +37,7 @@ class Case(Section):
     )
     analysis: Analysis = Field(default=Analysis(), title="Analysis", description="What is computed for the case.")
 
-    def __init__(self, **data: Any) -> None:
+    def __init__(self, /, **data: Any) -> None:
         try:
             super().__init__(**data)
         except ValidationError as error:

@@ -107,7 +107,7 @@ class Quantity(Door):
         keys = {"exclusiveMinimum": self.above, "minimum": self.at_least}
         keys |= {"exclusiveMaximum": self.below, "maximum": self.at_most}
         number = {"type": "number"} | {key: bound for key, bound in keys.items() if math.isfinite(bound)}
-        text = {"type": "string", "pattern": r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*[^\s0-9].*$"}
+        text = {"type": "string", "pattern": r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*[^\s0-9.eE+-].*$"}
         more = {"symbol": self.symbol} if self.symbol else {}
         return {"anyOf": [number, text], "unit": self.si or "-", **more}
 

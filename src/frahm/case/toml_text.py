@@ -24,7 +24,8 @@ def read_toml(text: str) -> tuple[Any, dict[str, int]]:
         return tomllib.loads(text), _lines(text)
     except tomllib.TOMLDecodeError as error:
         line = re.search(r"at line (\d+)", str(error))
-        raise TextError(f"not valid TOML: {error}", int(line[1]) if line else None) from None
+        number = int(line[1]) if line else max(1, text.count("\n") + (not text.endswith("\n")))
+        raise TextError(f"not valid TOML: {error}", number) from None
     except RecursionError:
         raise TextError("lists or tables are nested too deeply") from None
     except ValueError as error:

@@ -89,7 +89,7 @@ def read_yaml(text: str) -> tuple[Any, dict[str, int]]:
         return (None if root is None else reader.build(root)), reader.lines
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        problem = error.problem or error.context or "not readable"
+        problem = ", ".join(part for part in (error.context, error.problem) if part) or "not readable"
         raise TextError(f"not valid YAML: {problem}", mark.line + 1 if mark else None) from None
     except RecursionError:
         raise TextError("lists or mappings are nested too deeply") from None

@@ -1,0 +1,130 @@
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import typer
+from typer.testing import CliRunner
+
+import frahm
+from frahm.cli import app
+from frahm.cli.guarded import GuardedGroup
+
+FRAHM = [sys.executable, "-m", "frahm"]
+
+
+def run(*arguments):
+    return CliRunner().invoke(app, list(arguments))
+
+
+def test_check_shows_values_units_and_what_follows():
+    result = run("check", "jacket-pipe")
+    assert result.exit_code == 0
+    for text in ("247 kg", "4.90088 rad/s = 0.78 Hz", "0.762 m", "0.7972 Hz", "0.0867 m", "kappa 367.38", "rho2 0.02"):
+        assert text in result.stdout
+    assert "(default)" not in result.stdout
+    assert result.stderr == ""
+
+
+def test_check_marks_what_was_left_out(tmp_path):
+    file = tmp_path / "a.toml"
+    file.write_text("wind = {speed = 1, lift_coefficient = 1}\n"
+                    "pipe = {mass = 1, frequency = 1, damping_ratio = 0, diameter = 1}\n")  # fmt: skip
+    lines = run("check", str(file)).stdout.splitlines()
+    marked = {line.split()[0] for line in lines if line.endswith("(default)")}
+    assert {"pipe.length", "wind.air_density", "wind.strouhal", "absorbers", "analysis.seed"} <= marked
+    assert not {"pipe.mass", "wind.speed"} & marked
+
+
+def test_new_writes_a_case_that_checks(tmp_path):
+    file = tmp_path / "my-pipe.yaml"
+    assert run("new", str(file)).exit_code == 0
+    assert run("check", str(file)).exit_code == 0
+    assert frahm.load_case(file).name == "my-pipe"
+    assert "# natural frequency" in file.read_text()
+
+
+def test_new_never_replaces_a_file_unasked(tmp_path):
+    file = tmp_path / "a.yaml"
+    file.write_text("mine")
+    result = run("new", str(file))
+    assert (result.exit_code, file.read_text()) == (2, "mine")
+    assert "--force" in result.stderr
+    assert run("new", str(file), "--force").exit_code == 0
+    assert file.read_text() != "mine"
+
+
+@pytest.mark.parametrize("name", ["a.toml", "a", "missing/a.yaml", "folder.yaml"])
+def test_new_refuses_other_places(tmp_path, name):
+    (tmp_path / "folder.yaml").mkdir()
+    result = run("new", str(tmp_path / name), "--force")
+    assert result.exit_code == 2
+    assert name in result.stderr
+    assert [entry.name for entry in tmp_path.iterdir()] == ["folder.yaml"]
+
+
+def test_cases_and_schema():
+    assert run("cases").stdout.startswith("jacket-pipe  Jacket pipe")
+    assert json.loads(run("schema").stdout)["required"] == ["pipe", "wind"]
+
+
+def test_version():
+    assert run("--version").stdout == f"frahm {frahm.__version__}\n"
+
+
+@pytest.mark.parametrize(("arguments", "near"), [(["chek", "x"], "check"), (["new", "a.yaml", "--froce"], "--force")])
+def test_a_typo_is_answered_with_the_nearest_name(arguments, near):
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert near in result.stderr
+
+
+def test_interruption_ends_in_130():
+    interrupted = typer.Typer(cls=GuardedGroup)
+
+    @interrupted.command()
+    def work():
+        raise KeyboardInterrupt
+
+    @interrupted.command()
+    def rest():
+        pass
+
+    result = CliRunner().invoke(interrupted, ["work"])
+    assert result.exit_code == 130
+    assert "interrupted" in result.stderr
+
+
+def test_bad_input_in_a_real_process(tmp_path):
+    done = subprocess.run([*FRAHM, "check", "jacket-pip"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1
+    assert "Did you mean 'jacket-pipe'" in done.stderr
+    assert list(Path(tmp_path).iterdir()) == []
+
+
+def test_help_is_quick_and_imports_nothing_heavy():
+    code = (
+        "import sys; sys.argv[1:] = ['--help']\n"
+        "from frahm.cli import main\n"
+        "try: main()\n"
+        "except SystemExit: pass\n"
+        "heavy = {'numpy', 'scipy', 'numba', 'pydantic', 'pint', 'xarray', 'matplotlib', 'sympy'} & set(sys.modules)\n"
+        "assert not heavy, heavy"
+    )
+    start = time.perf_counter()
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "check" in done.stdout
+    assert time.perf_counter() - start < 3.0  # on an idle machine 0.2 s; the list above is what keeps it so
+
+
+def test_a_closed_pipe_is_no_traceback():
+    done = subprocess.run(
+        f"'{sys.executable}' -m frahm schema | head -1", shell=True, capture_output=True, text=True, check=False
+    )
+    assert done.stdout == "{\n"
+    assert "Traceback" not in done.stderr
