@@ -48,6 +48,8 @@ def refused_text(folder, text, name="bad.yaml"):
         ("mass: 1", "mass: .nan", r"pipe.mass: given nan; allowed: a finite number"),
         ("mass: 1", "mass: .inf", r"pipe.mass: given inf; allowed: a finite number"),
         ("mass: 1", "mass: 1e999", r"pipe.mass: given inf; allowed: a finite number"),
+        ("mass: 1", "mass: 1e200", r"pipe.mass: given 1e\+200; .*can only be a mistake"),
+        ("mass: 1", "mass: 1e-200", r"pipe.mass: given 1e-200; .*can only be a mistake"),
         ("mass: 1", "mass: true", r"pipe.mass: given True; allowed: a finite number"),
         ("mass: 1", "mass: heavy", r"pipe.mass: given 'heavy'; allowed: a finite number"),
         ("mass: 1", "mass: 2 m", r"pipe.mass: given '2 m'; .*'m' does not measure \[kg\]"),

@@ -61,15 +61,15 @@ class Case(Section):
                 raise refusal("a name no other absorber has", path=f"absorbers[{index}].name", value=name)
         return self
 
-    def with_pipe(self, **changes: Any) -> Case:
+    def with_pipe(self, /, **changes: Any) -> Case:
         """Case with other values of the pipe, such as ``frequency="0.8 Hz"``; what is not named stays."""
         return self._with_section("pipe", changes)
 
-    def with_wind(self, **changes: Any) -> Case:
+    def with_wind(self, /, **changes: Any) -> Case:
         """Case with other values of the wind, such as ``speed=2.7`` [m/s]; what is not named stays."""
         return self._with_section("wind", changes)
 
-    def with_analysis(self, **changes: Any) -> Case:
+    def with_analysis(self, /, **changes: Any) -> Case:
         """Case with other settings of the analysis, such as ``seed=2``; what is not named stays."""
         return self._with_section("analysis", changes)
 

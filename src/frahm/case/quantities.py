@@ -14,6 +14,7 @@ from frahm.errors import ParameterError, check_count, check_number, nearest
 from frahm.units import si_value, with_unit
 
 _HIGHEST_POWER = 15
+_SMALLEST, _LARGEST = 1e-30, 1e30  # in SI units: products of a few such numbers neither overflow nor vanish
 _NOT_IN_A_LINE = ("Cc", "Cs", "Zl", "Zp")  # control characters, halves of a pair, line and paragraph separators
 
 
@@ -98,9 +99,11 @@ class Quantity(Door):
             checked = check_number(
                 "value", number, above=self.above, at_least=self.at_least, below=self.below, at_most=self.at_most
             )
-            return checked + 0.0  # so that -0 and 0 are one case
         except ParameterError as error:
             raise refusal(self.allowed, hint=error.hint) from None
+        if checked and not _SMALLEST <= abs(checked) <= _LARGEST:
+            raise refusal(self.allowed, hint=f"A size beyond {_SMALLEST:g} ... {_LARGEST:g} can only be a mistake.")
+        return checked + 0.0  # so that -0 and 0 are one case
 
     def json_schema(self) -> dict[str, Any]:
         """JSON schema: the number with its bounds, or text with a unit."""

@@ -50,7 +50,7 @@ def lift_amplitude(
     D = check_number("diameter", diameter, above=0, unit="m")
     CL = check_number("lift_coefficient", lift_coefficient, at_least=0)
     rho = check_number("air_density", air_density, above=0, unit="kg/m^3")
-    return 0.5 * CL * rho * U**2 * D * check_number("length", length, above=0, unit="m")
+    return 0.5 * CL * rho * U * U * D * check_number("length", length, above=0, unit="m")
 
 
 def reduced_velocity(speed: float, frequency: float, diameter: float) -> float:
@@ -67,7 +67,7 @@ def reduced_velocity(speed: float, frequency: float, diameter: float) -> float:
     """
     omega = check_number("frequency", frequency, above=0, unit="rad/s")
     D = check_number("diameter", diameter, above=0, unit="m")
-    return 2 * math.pi * check_number("speed", speed, at_least=0, unit="m/s") / (omega * D)
+    return 2 * math.pi * check_number("speed", speed, at_least=0, unit="m/s") / omega / D
 
 
 def reynolds_number(speed: float, diameter: float, viscosity: float = AIR_VISCOSITY) -> float:

@@ -73,7 +73,7 @@ def test_the_template_is_the_built_in_case_under_another_name(tmp_path, name):
 positive = st.floats(1e-6, 1e12)
 label = st.text(st.characters(exclude_categories=["C", "Z"]), min_size=1, max_size=20)
 cubic = st.fixed_dictionaries({"kind": st.just("cubic"), "stiffness": positive, "damping": positive})
-finite = st.floats(allow_nan=False, allow_infinity=False)
+finite = st.just(0.0) | st.floats(1e-30, 1e30) | st.floats(-1e30, -1e-30)
 polynomial = st.fixed_dictionaries(
     {"kind": st.just("polynomial"), "coefficients": st.lists(finite, min_size=1, max_size=15), "damping": positive}
 )
@@ -85,11 +85,11 @@ cases = st.fixed_dictionaries(
             {
                 "mass": positive,
                 "frequency": st.floats(0.5, 1e6),
-                "damping_ratio": st.floats(0, 0.99),
+                "damping_ratio": st.just(0.0) | st.floats(1e-12, 0.99),
                 "diameter": positive,
             }
         ),
-        "wind": st.fixed_dictionaries({"speed": positive, "lift_coefficient": st.floats(0, 10)}),
+        "wind": st.fixed_dictionaries({"speed": positive, "lift_coefficient": st.just(0.0) | st.floats(1e-12, 10)}),
         "absorbers": st.lists(
             st.fixed_dictionaries({"name": label, "mass": positive, "law": cubic | polynomial}),
             max_size=3,
