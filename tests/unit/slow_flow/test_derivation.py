@@ -169,12 +169,11 @@ def test_equation_16_holds_the_sum_of_both_orders_and_no_second_amplitude():
 
 def test_paper_form_is_the_averaged_form_to_first_order_in_detuning_and_damping():
     h = sp.Symbol("h")
-    small = {ex.Omega: ex.omega + h * ex.sigma, ex.sigma: h * ex.sigma, ex.xi1: h * ex.xi1}
+    small = {ex.Omega: ex.omega + h * ex.sigma, ex.sigma: h * ex.sigma, ex.xi1: h * ex.xi1, ex.xi2: h * ex.xi2}
     paper, averaged = derive("paper").coefficients, derive("averaged").coefficients
-    for name in ("a", "e", "c2"):
-        difference = (averaged[name] - paper[name]).subs(small, simultaneous=True)
-        assert sp.expand(difference).coeff(h, 0) == 0
-        assert sp.expand(difference).coeff(h, 1) == 0
+    for name in ("a", "e", "c1", "c2"):
+        difference = sp.expand((averaged[name] - paper[name]).subs(small, simultaneous=True))
+        assert (difference.coeff(h, 0), difference.coeff(h, 1)) == (0, 0)
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -232,6 +231,15 @@ def test_equilibrium_relations_hold_at_an_equilibrium():
     for name, expression in equilibrium_relations().items():
         values = {s: PIPE[s.name] for s in expression.free_symbols if s.name in PIPE}
         assert float(expression.subs({**values, a: abs(x), b: abs(z)})) == pytest.approx(expected[name], rel=1e-9)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_relative_amplitude_of_an_equilibrium_solves_the_closed_cubic(form):
+    _, z = complex_state(equilibrium(form, PIPE))
+    k = derive(form).coefficient_values(PIPE)
+    n, e, a_ = k["cubic"] * abs(z) ** 2, k["e"].real, k["a"]
+    left = abs((e - a_) * n + 1j * e * k["c1"] + a_ * (e - 1j * k["c2"])) ** 2 * abs(z) ** 2
+    assert left == pytest.approx((e * PIPE["F"]) ** 2, rel=1e-9)
 
 
 def test_symbols_and_unknown_form():
