@@ -11,6 +11,7 @@ from scipy.optimize import fsolve
 
 from frahm.errors import ParameterError
 from frahm.slow_flow import expansion as ex
+from frahm.slow_flow import kernels
 from frahm.slow_flow.derivation import (
     FORMS,
     PARAMETERS,
@@ -240,6 +241,16 @@ def test_relative_amplitude_of_an_equilibrium_solves_the_closed_cubic(form):
     n, e, a_ = k["cubic"] * abs(z) ** 2, k["e"].real, k["a"]
     left = abs((e - a_) * n + 1j * e * k["c1"] + a_ * (e - 1j * k["c2"])) ** 2 * abs(z) ** 2
     assert left == pytest.approx((e * PIPE["F"]) ** 2, rel=1e-9)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_compiled_kernels_hold_the_derived_coefficients(form):
+    par = random_parameters(8)
+    k = derive(form).coefficient_values(par)
+    W = par["omega"] + par["sigma"]
+    code = kernels.PAPER if form == "paper" else kernels.AVERAGED
+    compiled = kernels.coefficients(code, W, par["omega"], par["xi1"], par["xi2"], 0.0, par["rho2"])
+    assert compiled == pytest.approx([*(k[name] for name in "paqre"), 1j * k["c1"], 1j * k["c2"]])
 
 
 def test_symbols_and_unknown_form():
