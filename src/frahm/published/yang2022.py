@@ -87,14 +87,19 @@ class Tolerance:
         Allowed difference, in the unit of the value and as a fraction of it; the larger of both counts.
     reason : str
         Why so much.
+    upper_bound : bool
+        Whether the printed value is a bound, so that everything below it agrees.
     """
 
     absolute: float
     relative: float
     reason: str
+    upper_bound: bool = False
 
     def allows(self, printed: float, computed: float) -> bool:
         """Whether `computed` is within this tolerance of `printed`."""
+        if self.upper_bound and computed <= printed:
+            return True
         return abs(computed - printed) <= max(self.absolute, self.relative * abs(printed))
 
 
@@ -103,7 +108,7 @@ ONE_DIGIT = Tolerance(0.05, 0.0, "printed with one digit: half a unit of it")
 PEAK = Tolerance(0.0, 0.02, "largest value on a grid of detunings, printed with three digits")
 APPROXIMATE = Tolerance(0.0, 0.1, "the text says 'approximately' or 'reaches'")
 THREE_DIGITS = Tolerance(0.0, 0.003, "the Strouhal number is printed with three digits")
-UPPER_BOUND = Tolerance(0.0, 0.0, "an upper bound: the computed value must not exceed it")
+UPPER_BOUND = Tolerance(0.0, 0.0, "the text says 'below' or 'less than'", upper_bound=True)
 
 
 @dataclass(frozen=True)
@@ -133,7 +138,7 @@ class Claim:
     Parameters
     ----------
     id : int
-        Row of the claims table.
+        Number of the claim.
     figure : str
         Figure or section of the paper.
     statement : str

@@ -29,6 +29,8 @@ def test_ranges_ascend():
         (yang2022.READ_OFF, -0.164, -0.170, False),
         (yang2022.APPROXIMATE, -0.1, -0.109, True),
         (yang2022.PEAK, 0.0493, 0.0557, False),
+        (yang2022.UPPER_BOUND, 0.02, 0.0165, True),
+        (yang2022.UPPER_BOUND, 0.02, 0.0201, False),
     ],
 )
 def test_tolerance(tolerance, printed, computed, allowed):
