@@ -108,6 +108,7 @@ ONE_DIGIT = Tolerance(0.05, 0.0, "printed with one digit: half a unit of it")
 PEAK = Tolerance(0.0, 0.02, "largest value on a grid of detunings, printed with three digits")
 APPROXIMATE = Tolerance(0.0, 0.1, "the text says 'approximately' or 'reaches'")
 THREE_DIGITS = Tolerance(0.0, 0.003, "the Strouhal number is printed with three digits")
+PEAK_RATIO = Tolerance(0.05, 0.04, "half a unit of the last printed digit; two largest values, each good to 2 %")
 UPPER_BOUND = Tolerance(0.0, 0.0, "the text says 'below' or 'less than'", upper_bound=True)
 
 
@@ -151,6 +152,8 @@ class Claim:
         sigma [rad/s] where the statement names one.
     printed : tuple of PrintedValue
         Printed numbers; empty where the statement is a yes or no.
+    statements : tuple of str
+        What the sentence says besides numbers: each can only hold or not.
     """
 
     id: int
@@ -160,6 +163,7 @@ class Claim:
     sinks: tuple[Sink, ...] = ()
     detuning: float | None = None
     printed: tuple[PrintedValue, ...] = ()
+    statements: tuple[str, ...] = ()
 
 
 def _range(name: str, low: float, high: float) -> tuple[PrintedValue, PrintedValue]:
@@ -181,6 +185,7 @@ CLAIMS = (
         2, "6", "At kappa 24.425 the response is one stable branch; its largest amplitudes are 0.0557 m and 0.0493 m.",
         "largest amplitudes over the detuning (the two numbers are exchanged in print)", (SOFT,),
         printed=(_length("pipe", 0.0557, PEAK), _length("relative", 0.0493, PEAK)),
+        statements=("one response at every detuning", "it is stable everywhere"),
     ),
     Claim(
         3, "5", "At kappa 97.97 the periodic response is unstable for sigma in [0, 0.024].",
@@ -189,7 +194,7 @@ CLAIMS = (
     Claim(
         4, "5, 6", "The peak at kappa 24.425 is approximately 1.7 times the peak at kappa 97.97.",
         "ratio of the largest pipe amplitudes", (SOFT, MIDDLE),
-        printed=(PrintedValue("peak ratio", 1.7, "-", APPROXIMATE),),
+        printed=(PrintedValue("peak ratio", 1.7, "-", PEAK_RATIO),),
     ),
     Claim(
         5, "7", "At kappa 367.38 several responses exist for sigma in [-0.164, -0.1].",
@@ -217,6 +222,7 @@ CLAIMS = (
     Claim(
         10, "8", "The initial state (3, 3, 3, 3) leads to the upper branch at sigma -0.144.",
         "response reached from (x1, x1', x2, x2') = (3, 3, 3, 3) in metres and metres per second", (STIFF,), -0.144,
+        statements=("the upper branch is reached",),
     ),
     Claim(
         11, "9", "At kappa 367.38 and sigma 0 the pipe moves approximately 20 % of what it does without a sink.",
@@ -242,32 +248,41 @@ CLAIMS = (
         " in [-0.016, 0.084], and the pipe stays below 0.02 m.",
         "saddle-nodes left of resonance; range with an unstable response; largest pipe amplitude", (STIFF_MORE_DAMPED,),
         printed=(*_range("unstable", -0.016, 0.084), _length("pipe, at most", 0.02, UPPER_BOUND)),
+        statements=("no saddle-node left of resonance",),
     ),
     Claim(
         15, "12", "More damping shrinks the unstable range at kappa 367.38; at kappa 24.425 it lowers the peak, and the"
         " response is stable.",
         "unstable ranges of the first three sinks, peaks and stability of the others",
         (STIFF_LESS_DAMPED, STIFF, STIFF_MORE_DAMPED, SOFT_LESS_DAMPED, SOFT, SOFT_MORE_DAMPED),
+        statements=(
+            "the unstable range shrinks at kappa 367.38", "the peak falls at kappa 24.425",
+            "the response is stable at kappa 24.425",
+        ),
     ),
     Claim(
         16, "3, 4", "At kappa 97.97 the motion beats, the relative motion is much larger than the pipe's, and its"
         " energy lies near 0.78 Hz.",
         "time histories and spectra from rest", (MIDDLE,), 0.0,
         (PrintedValue("dominant frequency", 0.78, "Hz", APPROXIMATE),),
+        statements=("the motion beats", "the relative motion is much larger than the pipe's"),
     ),
     Claim(
         17, "9", "The stiffer the sink, the less the pipe moves.",
         "largest pipe amplitude of each sink", (SOFT, MIDDLE, STIFF),
+        statements=("the stiffer the sink, the less the pipe moves",),
     ),
     Claim(
         18, "10", "At xi2 0.0044 and sigma 0 there is only one equilibrium and it is unstable; right of resonance the"
         " pipe stays below 0.02 m.",
         "number and stability of the responses at sigma 0; largest pipe amplitude for sigma > 0",
         (STIFF_LESS_DAMPED,), 0.0, (_length("pipe, at most", 0.02, UPPER_BOUND),),
+        ("one equilibrium", "it is unstable"),
     ),
     Claim(
         19, "9, 11", "Right of resonance the range with several responses is smaller at xi2 0.0117 than at 0.0085.",
         "range between the saddle-nodes right of resonance", (STIFF_MORE_DAMPED, STIFF),
+        statements=("the range is smaller",),
     ),
 )  # fmt: skip
 
