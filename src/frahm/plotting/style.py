@@ -1,0 +1,66 @@
+"""How figures look: one palette that colour-blind readers can tell apart, one size of text, one way to save."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# Okabe and Ito's palette. Meaning never hangs on colour alone: line style or marker says it too.
+BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
+INK, GREY = "#1a1a1a", "#6b6b6b"
+PIPE, SINK, BARE = BLUE, VERMILLION, GREY
+UNSTABLE_DASHES = (0, (4.0, 2.0))
+
+_RULES = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.edgecolor": "#444444",
+    "axes.labelsize": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.color": "#e3e3e3",
+    "grid.linewidth": 0.6,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "lines.linewidth": 1.5,
+    "svg.hashsalt": "frahm",  # the same figure is the same file
+    "svg.fonttype": "none",
+}
+_INCH = 25.4
+
+
+@contextlib.contextmanager
+def figure_style() -> Iterator[None]:
+    """Drawing and saving inside this block follows the style of the package."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(_RULES):
+        yield
+
+
+def new_figure(width: float = 160.0, height: float = 90.0) -> Figure:
+    """Empty figure of the given size [mm] that arranges its own margins; it needs no display."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width / _INCH, height / _INCH), layout="constrained")
+
+
+def save_figure(figure: Figure, stem: str | Path) -> list[Path]:
+    """Write `stem`.png and `stem`.svg, each complete or not at all; return their paths."""
+    from frahm.files import written_beside
+
+    paths = [Path(f"{stem}.png"), Path(f"{stem}.svg")]
+    for path in paths:
+        metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+        with written_beside(path) as temporary:
+            figure.savefig(temporary, dpi=160, metadata=metadata)
+    return paths
