@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -16,7 +16,7 @@ INK, GREY = "#1a1a1a", "#6b6b6b"
 PIPE, SINK, BARE = BLUE, VERMILLION, GREY
 UNSTABLE_DASHES = (0, (4.0, 2.0))
 
-_RULES = {
+_RULES: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "axes.edgecolor": "#444444",

@@ -1,0 +1,19 @@
+"""Room `analysis`: one case through every step that tells something about it, stored and read back."""
+
+from frahm.analysis.analysis import STEPS, Analysis, Progress, Step, analyse
+from frahm.analysis.section import Check, Section, Work
+from frahm.analysis.store import load_analysis, read_summary, save_analysis
+
+__all__ = [
+    "STEPS",
+    "Analysis",
+    "Check",
+    "Progress",
+    "Section",
+    "Step",
+    "Work",
+    "analyse",
+    "load_analysis",
+    "read_summary",
+    "save_analysis",
+]

@@ -1,0 +1,203 @@
+"""`analyse`: one case through every step, as one frozen result that can be stored and read back."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import math
+import platform
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from frahm import __version__
+from frahm.analysis.cross_check import cross_check
+from frahm.analysis.linear import without_absorber
+from frahm.analysis.manifold import manifold
+from frahm.analysis.motions import SAMPLES_PER_PERIOD, motions
+from frahm.analysis.response import response
+from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
+from frahm.analysis.settling import PERIODIC_BELOW
+from frahm.analysis.verdict import largest_motion, verdict
+from frahm.case import Case, load_case
+from frahm.time_integration.batch import TOLERANCE
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SCHEMA = "frahm-summary-1"
+Progress = Callable[[str, int, int], None]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of the analysis: what it is called for people, and the function that does it."""
+
+    title: str
+    run: Callable[[Work], Section]
+
+
+# In this order; a step reads what the steps before it found. A further analysis is one more line here.
+STEPS = (
+    Step("pipe without absorbers", without_absorber),
+    Step("response and special points", response),
+    Step("slow manifold", manifold),
+    Step("motions of the exact equations", motions),
+    Step("cross-check of slow flow and exact equations", cross_check),
+    Step("largest motion", largest_motion),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """What is known about a case.
+
+    Attributes
+    ----------
+    case : Case
+        What was analysed.
+    results : dict
+        Numbers, by step; plain data, SI units.
+    data : dict of Dataset
+        Arrays, by step; every variable has units and a long name.
+    checks : tuple of Check
+        What was tested, with status "pass", "fail" or "unverified".
+    unverified : tuple of str
+        Sentences on what could not be vouched for.
+    notes : tuple of str
+        Sentences on the limits of what was done.
+    interrupted : bool
+        Whether steps are missing because the work was stopped.
+    version : str
+        Version of the package that made it.
+    """
+
+    case: Case
+    results: dict[str, Any]
+    data: dict[str, xr.Dataset] = field(default_factory=dict)
+    checks: tuple[Check, ...] = ()
+    unverified: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    interrupted: bool = False
+    version: str = __version__
+
+    @property
+    def verdict(self) -> str:
+        """What the results come to, in a few sentences."""
+        return str(self.results["verdict"])
+
+    @property
+    def verified(self) -> bool:
+        """Whether every check passed and nothing is unverified."""
+        return not self.unverified and all(check.status == "pass" for check in self.checks)
+
+    def summary(self) -> dict[str, Any]:
+        """Everything but the arrays, as plain data for strict JSON; numbers that are not finite become None."""
+        notes = {"notes": list(self.notes), "interrupted": self.interrupted}
+        return {
+            "schema": SCHEMA,
+            "frahm": self.version,
+            "case": self.case.to_dict(),
+            "results": plain({**self.results, **notes}),
+            "checks": [{"name": c.name, "status": c.status, "detail": c.detail} for c in self.checks],
+            "unverified": list(self.unverified),
+        }
+
+
+def analyse(case: Any, *, progress: Progress | None = None) -> Analysis:
+    """Analyse a case: responses, slow manifold, motions of the exact equations, checks.
+
+    Parameters
+    ----------
+    case : Case, str, Path or dict
+        A case, or whatever `frahm.load_case` reads.
+    progress : callable, optional
+        Called with the title of a step, its number from 0 and the number of steps, before each step and at the end.
+
+    Returns
+    -------
+    Analysis
+        If the work is interrupted from the keyboard: of the steps that were finished, with `interrupted` set.
+
+    Raises
+    ------
+    ParameterError
+        If the case cannot be read.
+    """
+    work = Work(load_case(case))
+    interrupted = False
+    for number, step in enumerate(STEPS):
+        try:
+            if progress:
+                progress(step.title, number, len(STEPS))
+            work = work.with_section(step.run(work))
+        except KeyboardInterrupt:
+            missing = ", ".join(left.title for left in STEPS[number:])
+            work = work.with_section(Section(unverified=(f"Interrupted before these were finished: {missing}.",)))
+            interrupted = True
+            break
+    if progress and not interrupted:
+        progress("done", len(STEPS), len(STEPS))
+    return _concluded(work, interrupted)
+
+
+def _concluded(work: Work, interrupted: bool) -> Analysis:
+    done = work.done
+    results = {"has_absorber": bool(work.case.absorbers), **done.results}
+    failed = sum(check.status == FAIL for check in done.checks)
+    doubts = len(done.unverified) + sum(check.status == UNVERIFIED for check in done.checks)
+    results["verdict"] = verdict(results, failed, doubts)
+    results["provenance"] = _provenance(work.case)
+    return Analysis(
+        case=work.case,
+        results=results,
+        data=done.data,
+        checks=done.checks,
+        unverified=done.unverified,
+        notes=done.notes,
+        interrupted=interrupted,
+    )
+
+
+def _provenance(case: Case) -> dict[str, Any]:
+    packages = ("numpy", "scipy", "numba", "xarray")
+    return {
+        "digest": case.digest,
+        "defaulted": defaulted_fields(case),
+        "versions": {
+            "python": platform.python_version(),
+            **{name: importlib.metadata.version(name) for name in packages},
+        },
+        "settings": {
+            "slow_flow_form": case.analysis.form,
+            "integration_tolerance": TOLERANCE,
+            "integration_periods": case.analysis.periods,
+            "samples_per_period": SAMPLES_PER_PERIOD,
+            "periodic_below": PERIODIC_BELOW,
+        },
+    }
+
+
+def defaulted_fields(case: Case) -> list[str]:
+    """Paths of the fields that were left out and took their default."""
+    paths = [] if "absorbers" in case.model_fields_set else ["absorbers"]
+    sections = [(name, getattr(case, name)) for name in ("pipe", "wind", "analysis")]
+    for i, absorber in enumerate(case.absorbers):
+        sections += [(f"absorbers[{i}]", absorber), (f"absorbers[{i}].law", absorber.law)]
+    for path, section in sections:
+        paths += [f"{path}.{name}" for name in type(section).model_fields if name not in section.model_fields_set]
+    return paths
+
+
+def plain(value: Any) -> Any:
+    """`value` as dictionaries, lists, text, bool, int, float and None only; a number that is not finite is None."""
+    if isinstance(value, dict):
+        return {str(key): plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(entry) for entry in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

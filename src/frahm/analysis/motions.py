@@ -1,0 +1,228 @@
+"""Step `motions`: the exact equations integrated from rest at the detunings that matter."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from frahm.analysis.linear import bare_amplitude
+from frahm.analysis.points import PointOfInterest, points_of_interest
+from frahm.analysis.section import FAIL, PASS, UNVERIFIED, Check, Section, Work
+from frahm.analysis.settling import KINDS, envelope_of, judge
+from frahm.arrays import Floats, labelled
+from frahm.systems import System
+from frahm.time_integration import TimeHistory, integrate, integrate_batch
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SAMPLES_PER_PERIOD = 32
+_MOST_KEPT = 4000  # periods
+_TAIL = 0.25  # of the run
+_HARMONICS_SHOWN = 5.5
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One integrated motion and what its tail shows.
+
+    Attributes
+    ----------
+    point : PointOfInterest
+        Where and why.
+    history, tail : TimeHistory
+        What was kept of the run, and the last quarter of it.
+    start : float
+        Time of the first sample kept [s].
+    kind : str
+        "periodic", "modulated" or "unsettled".
+    spread : float
+        Spread of the Poincare section, see `frahm.analysis.settling.section_spread`.
+    bare : float
+        Amplitude without absorbers at the same frequency [m].
+    """
+
+    point: PointOfInterest
+    history: TimeHistory
+    tail: TimeHistory
+    start: float
+    kind: str
+    spread: float
+    bare: float
+
+
+def motions(work: Work) -> Section:
+    """Motions from rest at every point of interest."""
+    found = [_motion(work, point) for point in points_of_interest(work)]
+    unsettled = [motion for motion in found if motion.kind == "unsettled"]
+    periods = work.case.analysis.periods
+    doubts = tuple(
+        f"The motion from rest at detuning {motion.point.detuning:.4g} rad/s has not settled within {periods} periods. "
+        + (motion.history.outcome.value if not motion.history.outcome.ok else "Raise analysis.periods.")
+        for motion in unsettled
+    )
+    return Section(
+        results={"motions": [_summary(motion) for motion in found]},
+        data={"motions": _motions_dataset(found), "spectra": _spectra_dataset(found)},
+        checks=(_finished(found), *_expected(work, found)),
+        unverified=doubts,
+        notes=(
+            "Motions were integrated from rest only: another start can lead to another motion. "
+            "Which motions last, and from which starts, is not searched here.",
+        ),
+    )
+
+
+def _motion(work: Work, point: PointOfInterest) -> Motion:
+    history, start = _followed(work.system, point.detuning, work.case.analysis.periods)
+    tail = history.last(max(1, math.floor(_TAIL * history.periods)))
+    kind, spread = judge(tail)
+    bare = float(bare_amplitude(work.case, history.frequency)[0])
+    return Motion(point, history, tail, start, kind, spread, bare)
+
+
+def _followed(system: System, detuning: float, periods: int) -> tuple[TimeHistory, float]:
+    """The run from rest; of a very long one the end only, and the time it begins at [s]."""
+    skipped = max(0, periods - _MOST_KEPT)
+    state = None
+    if skipped:
+        state = integrate_batch(system, detuning=detuning, periods=skipped, window=0).final_states[0]
+    history = integrate(
+        system, detuning=detuning, periods=periods - skipped, initial_state=state, samples_per_period=SAMPLES_PER_PERIOD
+    )
+    return history, 2 * np.pi / history.frequency * skipped
+
+
+def _summary(motion: Motion) -> dict[str, Any]:
+    peaks, (low, high) = motion.tail.peaks(), _peak_range(motion)
+    return {
+        "key": motion.point.key,
+        "reason": motion.point.reason,
+        "detuning": motion.point.detuning,
+        "frequency": motion.history.frequency,
+        "kind": motion.kind,
+        "pipe_peak": peaks.pipe,
+        "relative_peak": peaks.relative,
+        "pipe_rms": motion.tail.rms,
+        "pipe_envelope": [low, high],
+        "section_spread": motion.spread,
+        "pipe_peak_whole_run": motion.history.peaks().pipe,
+        "pipe_peak_without_absorber": motion.bare,
+        "outcome": motion.history.outcome.name.lower(),
+    }
+
+
+def _peak_range(motion: Motion) -> tuple[float, float]:
+    """Smallest and largest peak |x1| of a period within the tail [m]."""
+    low, high = envelope_of(motion.tail.pipe, SAMPLES_PER_PERIOD)
+    peaks = np.maximum(high, -low)
+    return (float(peaks.min()), float(peaks.max())) if peaks.size else (math.nan, math.nan)
+
+
+def _finished(found: list[Motion]) -> Check:
+    name = "Every integration reached its end"
+    bad = [m for m in found if not m.history.outcome.ok]
+    if bad:
+        where = "; ".join(f"{m.point.detuning:.4g} rad/s: {m.history.outcome.value}" for m in bad)
+        return Check(name, FAIL, where)
+    tolerance, steps = found[0].history.tolerance, sum(m.history.steps[0] for m in found)
+    return Check(name, PASS, f"{len(found)} runs, {steps} steps, local error below {tolerance:g} of the motion.")
+
+
+def _expected(work: Work, found: list[Motion]) -> Iterable[Check]:
+    """Where the slow flow has no stable response, the exact motion must be modulated."""
+    from frahm.analysis.ranges import ranges_without_stable_response
+
+    if "response" not in work.done.data:
+        return
+    ranges = ranges_without_stable_response(work.done.data["response"])
+    inside = [m for m in found if any(lo < m.point.detuning < hi for lo, hi in ranges)]
+    if not inside:
+        return
+    name = "Where no periodic response is stable, the motion is modulated"
+    text = ", ".join(f"{m.kind} at {m.point.detuning:.4g} rad/s" for m in inside)
+    kinds = {m.kind for m in inside}
+    status = PASS if kinds == {"modulated"} else (FAIL if "periodic" in kinds else UNVERIFIED)
+    yield Check(name, status, f"Integrated: {text}.")
+
+
+def _motions_dataset(found: list[Motion]) -> xr.Dataset:
+    import xarray as xr
+
+    def each(values: Iterable[Any], long_name: str, unit: str, **more: Any) -> tuple[Any, ...]:
+        return labelled("motion", np.array(list(values)), long_name, unit, **more)
+
+    def rows(values: list[Floats], dim: str, long_name: str) -> tuple[Any, ...]:
+        return labelled(("motion", dim), _padded(values), long_name, "s" if long_name.startswith("time") else "m")
+
+    points, histories = [m.point for m in found], [m.history for m in found]
+    absorbed = bool(found[0].history.system.elements)
+    variables = {
+        "detuning": each((p.detuning for p in points), "detuning sigma = Omega - omega", "rad/s"),
+        "frequency": each((h.frequency for h in histories), "excitation frequency Omega", "rad/s"),
+        "kind": each((KINDS.index(m.kind) for m in found), "kind of motion", "1", codes=_codes()),
+        "tail_start": each((m.start + m.tail.time[0] for m in found), "time the tail begins", "s"),
+        "time": rows([m.start + m.history.time for m in found], "sample", "time"),
+        "x1": rows([h.pipe for h in histories], "sample", "pipe displacement"),
+        "envelope_time": rows([m.start + _middles(m.history) for m in found], "period", "time of the envelope"),
+    }
+    signals = {"x1": ("pipe", lambda h: h.pipe)}
+    if absorbed:
+        variables["z"] = rows([h.z for h in histories], "sample", "relative displacement of the first absorber")
+        variables["x2"] = rows([h.x2 for h in histories], "sample", "displacement of the first absorber")
+        signals["z"] = ("relative", lambda h: h.z)
+    for name, (text, values) in signals.items():
+        pairs = [envelope_of(values(h), SAMPLES_PER_PERIOD) for h in histories]
+        variables[f"{name}_low"] = rows([a for a, _ in pairs], "period", f"smallest {text} displacement of a period")
+        variables[f"{name}_high"] = rows([b for _, b in pairs], "period", f"largest {text} displacement of a period")
+        slow = [_first_harmonic(h, f"{text}_amplitude") for h in histories]
+        variables[f"{name}_amplitude"] = rows(slow, "period", f"first-harmonic {text} amplitude of a period")
+    attributes = {"keys": "; ".join(p.key for p in points), "samples_per_period": SAMPLES_PER_PERIOD}
+    return xr.Dataset(variables, attrs=attributes)
+
+
+def _spectra_dataset(found: list[Motion]) -> xr.Dataset:
+    """One-sided amplitude spectra of the tails, up to the fifth harmonic."""
+    import xarray as xr
+
+    spectra = [m.tail.spectrum() for m in found]
+    kept = [s.isel(frequency_hz=s["frequency_hz"].values < _HARMONICS_SHOWN * m.history.frequency / (2 * np.pi))
+            for s, m in zip(spectra, found, strict=True)]  # fmt: skip
+    dims = ("motion", "line")
+    variables = {
+        "frequency_hz": labelled(dims, _padded([s["frequency_hz"].values for s in kept]), "frequency", "Hz"),
+    }
+    names = {"pipe_amplitude": "amplitude of the pipe", "relative_amplitude": "amplitude of the first absorber"}
+    for name, text in names.items():
+        if found[0].history.system.elements or name == "pipe_amplitude":
+            variables[name] = labelled(dims, _padded([s[name].values for s in kept]), text, "m")
+    return xr.Dataset(variables, attrs={"window": "hann", "keys": "; ".join(m.point.key for m in found)})
+
+
+def _padded(rows: list[Floats]) -> Floats:
+    """Rows of unequal length as one array, NaN behind the shorter ones."""
+    out = np.full((len(rows), max(row.size for row in rows)), np.nan)
+    for target, row in zip(out, rows, strict=True):
+        target[: row.size] = row
+    return out
+
+
+def _middles(history: TimeHistory) -> Floats:
+    period = 2 * np.pi / history.frequency
+    return period * (0.5 + np.arange((history.time.size - 1) // SAMPLES_PER_PERIOD))
+
+
+def _first_harmonic(history: TimeHistory, name: str) -> Floats:
+    return (
+        np.asarray(history.envelope()[name].values, dtype=float)
+        if history.time.size > SAMPLES_PER_PERIOD
+        else np.empty(0)
+    )
+
+
+def _codes() -> str:
+    return ", ".join(f"{code} {kind}" for code, kind in enumerate(KINDS))

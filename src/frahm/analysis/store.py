@@ -1,0 +1,121 @@
+"""An analysis on disk: case.yaml, summary.json and results.nc, each complete or not there at all."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from frahm.analysis.analysis import SCHEMA, Analysis
+from frahm.analysis.section import Check
+from frahm.case import load_case
+from frahm.errors import ParameterError
+from frahm.files import write_text, written_beside
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+CASE_FILE, SUMMARY_FILE, ARRAYS_FILE = "case.yaml", "summary.json", "results.nc"
+_KINDS_COMPRESSED = "fiu"
+
+
+def save_analysis(analysis: Analysis, folder: str | Path) -> list[Path]:
+    """Write the three files into an existing folder and return their paths.
+
+    Raises
+    ------
+    ParameterError
+        If a file cannot be written.
+    """
+    folder = Path(folder)
+    analysis.case.to_yaml(folder / CASE_FILE)
+    _write_arrays(analysis, folder / ARRAYS_FILE)
+    text = json.dumps(analysis.summary(), indent=2, allow_nan=False, ensure_ascii=False)
+    write_text(folder / SUMMARY_FILE, text + "\n")
+    return [folder / name for name in (CASE_FILE, SUMMARY_FILE, ARRAYS_FILE)]
+
+
+def load_analysis(folder: str | Path) -> Analysis:
+    """Read what `save_analysis` wrote.
+
+    Raises
+    ------
+    ParameterError
+        If the folder does not hold an analysis, or a file of it cannot be read.
+    """
+    folder = Path(folder)
+    summary = read_summary(folder)
+    results = summary["results"]
+    notes, interrupted = results.pop("notes"), results.pop("interrupted")
+    return Analysis(
+        case=load_case(summary["case"]),
+        results=results,
+        data=_read_arrays(folder / ARRAYS_FILE),
+        checks=tuple(Check(**check) for check in summary["checks"]),
+        unverified=tuple(summary["unverified"]),
+        notes=tuple(notes),
+        interrupted=interrupted,
+        version=summary["frahm"],
+    )
+
+
+def read_summary(folder: str | Path) -> dict[str, Any]:
+    """The summary of an analysis as plain data."""
+    path = Path(folder) / SUMMARY_FILE
+    allowed = f"a folder that `frahm run` wrote, with {SUMMARY_FILE} in it"
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise ParameterError("DIR", str(folder), allowed, hint=f"{path}: {error.strerror}.") from None
+    except ValueError:
+        raise ParameterError("DIR", str(folder), allowed, hint=f"{path} is not valid JSON.") from None
+    known = {"schema", "frahm", "case", "results", "checks", "unverified"}
+    if not isinstance(summary, dict) or summary.get("schema") != SCHEMA or not known <= set(summary):
+        raise ParameterError("DIR", str(folder), allowed, hint=f"{path} is not a summary of this version.")
+    return summary
+
+
+def joined(data: dict[str, xr.Dataset]) -> xr.Dataset:
+    """All datasets as one: the name of each is put before its variables, dimensions and attributes."""
+    import xarray as xr
+
+    parts, attributes = [], {"sections": ", ".join(data)}
+    for section, dataset in data.items():
+        plain = dataset.reset_coords()
+        parts.append(plain.rename({name: f"{section}.{name}" for name in {*plain.variables, *plain.dims}}))
+        attributes |= {f"{section}.{name}": value for name, value in dataset.attrs.items()}
+    return xr.merge(parts, combine_attrs="drop", join="exact").assign_attrs(attributes)
+
+
+def separated(whole: xr.Dataset) -> dict[str, xr.Dataset]:
+    """The datasets that `joined` put together."""
+    data = {}
+    for section in filter(None, whole.attrs["sections"].split(", ")):
+        prefix = f"{section}."
+        part = whole[[name for name in whole.variables if str(name).startswith(prefix)]]
+        names = {name: str(name).removeprefix(prefix) for name in {*part.variables, *part.dims}}
+        attributes = {key.removeprefix(prefix): value for key, value in whole.attrs.items() if key.startswith(prefix)}
+        data[section] = part.rename(names)
+        data[section].attrs = attributes
+    return data
+
+
+def _write_arrays(analysis: Analysis, path: Path) -> None:
+    whole = joined(analysis.data).assign_attrs(
+        frahm_version=analysis.version, case=analysis.case.name, case_digest=analysis.case.digest
+    )
+    packed = {"zlib": True, "complevel": 4, "shuffle": True}
+    encoding = {name: packed for name, v in whole.variables.items() if v.ndim and v.dtype.kind in _KINDS_COMPRESSED}
+    with written_beside(path) as temporary:
+        whole.to_netcdf(temporary, engine="h5netcdf", encoding=encoding)
+
+
+def _read_arrays(path: Path) -> dict[str, xr.Dataset]:
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as opened:
+            return separated(opened.load())
+    except (OSError, KeyError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "it is damaged or not a results file"
+        raise ParameterError("DIR", str(path.parent), f"a folder with {path.name} in it", hint=f"{reason}.") from None

@@ -1,0 +1,98 @@
+"""From datasets to lines and marks: what static and interactive figures both draw."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from frahm.arrays import Floats
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SHORT_NAMES = {
+    "saddle-node": "SN",
+    "hopf": "H",
+    "neimark-sacker": "NS",
+    "period-doubling": "PD",
+    "branch-point": "BP",
+}
+
+
+@dataclass(frozen=True)
+class Line:
+    """A stretch of one branch with one kind of stability; `x` is the detuning [rad/s], `y` the displacement [m]."""
+
+    x: Floats
+    y: Floats
+    stable: bool
+    detached: bool
+
+    @property
+    def name(self) -> str:
+        """What a legend says."""
+        return ("detached branch, " if self.detached else "") + ("stable" if self.stable else "unstable")
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A special point: its label (SN1, H2, ...), its kind and where it lies."""
+
+    label: str
+    kind: str
+    x: float
+    y: float
+
+
+def response_lines(curve: xr.Dataset, quantity: str) -> list[Line]:
+    """Stretches of every branch; neighbouring stretches share a point, so that no gap is seen between them."""
+    branch, piece = curve["branch"].values, curve["piece"].values
+    stable = curve["stable"].values.astype(bool)
+    detached = curve["detached"].values.astype(bool) if "detached" in curve else np.zeros(branch.max() + 1, dtype=bool)
+    x, y = curve["detuning"].values, curve[quantity].values
+    return [
+        Line(x[part], y[part], holds, bool(detached[branch[part.start]]))
+        for part, holds in stretches(stable, piece, branch)
+    ]
+
+
+def stretches(stable: np.ndarray, *numbers: np.ndarray) -> list[tuple[slice, bool]]:
+    """Stretches of equal stability of points given in order, each running on to the first point of the next.
+
+    Where one of `numbers` (branch, piece) changes, the line is broken.
+    """
+    breaks = {0, stable.size, *(int(i) + 1 for values in numbers for i in np.flatnonzero(np.diff(values)))}
+    parts = []
+    for first, last in pairwise(sorted(breaks)):
+        cuts = [first, *(int(i) + 1 + first for i in np.flatnonzero(np.diff(stable[first:last]))), last]
+        parts += [(slice(a, min(b + 1, last)), bool(stable[a])) for a, b in pairwise(cuts)]
+    return parts
+
+
+def special_marks(curve: xr.Dataset, quantity: str) -> list[Mark]:
+    """Special points in order of frequency, numbered kind by kind."""
+    if "special_kind" not in curve:
+        return []
+    kinds = curve.attrs["special_kind_names"].split(", ")
+    count: dict[str, int] = {}
+    marks = []
+    columns = (curve["special_kind"].values, curve["special_detuning"].values, curve[f"special_{quantity}"].values)
+    for code, x, y in zip(*columns, strict=True):
+        kind = kinds[int(code)]
+        count[kind] = count.get(kind, 0) + 1
+        marks.append(Mark(f"{SHORT_NAMES[kind]}{count[kind]}", kind, float(x), float(y)))
+    return marks
+
+
+def thinned(x: Floats, y: Floats, most: int = 1000) -> tuple[Floats, Floats]:
+    """Lowest and highest value of `y` in equal stretches, at most `most` points in all: extremes are never lost."""
+    finite = np.isfinite(y)
+    x, y = x[finite], y[finite]
+    if y.size <= most:
+        return x, y
+    edges = np.linspace(0, y.size, most // 2 + 1).astype(int)
+    kept = sorted({a + pick(y[a:b]) for a, b in pairwise(edges) if b > a for pick in (np.argmin, np.argmax)})
+    return x[kept], y[kept]
