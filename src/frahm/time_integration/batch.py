@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 TOLERANCE = 1e-7
 MOST_PERIODS = 10_000_000
+LEAST_STEPS, STEPS_PER_PERIOD = 5e6, 500.0  # of the step limit: a few seconds, and far more than any motion needs
 MOST_NUMBERS = 50_000_000  # kept in memory: 400 MB
 _CHUNK = 64  # runs a thread takes at a time
 _OUTCOMES = (Outcome.DONE, Outcome.DIVERGED, Outcome.STEP_LIMIT, Outcome.STEP_TOO_SMALL)
@@ -91,7 +92,7 @@ def integrate_batch(
     frequency: ArrayLike | None = None,
     initial_states: ArrayLike | None = None,
     periods: int = 1000,
-    window: int = 50,
+    window: int | None = None,
     strobes: int = 0,
     phase: ArrayLike = 0.0,
     force_scale: ArrayLike = 1.0,
@@ -113,7 +114,7 @@ def integrate_batch(
     periods : int
         Periods of the forcing to integrate.
     window : int
-        Periods at the end over which peaks and rms are taken; 0 for none.
+        Periods at the end over which peaks and rms are taken: 50, or all if there are fewer, by default; 0 for none.
     strobes : int
         How many states at whole periods to keep, counted from the end.
     phase : float or array_like, shape (N,)
@@ -137,9 +138,10 @@ def integrate_batch(
     phases, scales = _vector("phase", phase), _vector("force_scale", force_scale)
     lengths = {"frequency": omega.size, "initial_states": len(states), "phase": phases.size, "force_scale": scales.size}
     count = _common_length({"case_or_system": len(systems), **lengths})
+    periods = check_count("periods", periods, at_most=MOST_PERIODS)
     plan = plan_run(
-        periods=float(check_count("periods", periods, at_most=MOST_PERIODS)),
-        window=check_count("window", window, at_least=0, at_most=periods),
+        periods=float(periods),
+        window=min(50, periods) if window is None else check_count("window", window, at_least=0, at_most=periods),
         first_sample=periods - check_count("strobes", strobes, at_least=0, at_most=periods) + 1,
         samples_per_period=1,
         tolerance=tolerance,
@@ -162,7 +164,7 @@ def plan_run(
     """Checked plan with a step limit that grows with the length of the run."""
     tolerance = TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
     whole = float(np.floor(periods))
-    max_steps = 5e6 + 500.0 * periods
+    max_steps = LEAST_STEPS + STEPS_PER_PERIOD * periods
     return Plan(whole, periods - whole, float(window), first_sample, samples_per_period, tolerance, max_steps)
 
 
