@@ -173,7 +173,7 @@ def run_plan(packed: PackedSystems, runs: Runs, plan: Plan, samples: int, worker
     count, width = runs.state.shape
     findings = Findings(
         np.zeros(count, dtype=np.int64), np.zeros((count, 2), dtype=np.int64), np.zeros(count),
-        np.zeros((count, ROWS)), np.full((count, samples, width), np.nan),
+        np.zeros((count, ROWS)), np.empty((count, samples, width)),
     )  # fmt: skip
 
     def run_chunk(start: int) -> None:

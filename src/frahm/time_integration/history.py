@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -231,13 +231,13 @@ def integrate(
     x, v = samples[:reached, :n], samples[:reached, n:]
     direction = system.elements[0].direction if system.elements else np.full(n, np.nan)
     return TimeHistory(
-        time=frozen(2 * np.pi / omega * np.arange(reached) / per_period), x=_view(x), v=_view(v),
-        z=frozen(x @ direction), w=frozen(v @ direction), frequency=omega, outcome=outcome,
+        time=_view(np.arange(reached) * (2 * np.pi / (omega * per_period))), x=_view(x), v=_view(v),
+        z=_view(x @ direction), w=_view(v @ direction), frequency=omega, outcome=outcome,
         steps=(int(findings.steps[0, 0]), int(findings.steps[0, 1])), system=system, initial_state=state,
         periods=periods, samples_per_period=per_period, tolerance=plan.tolerance,
     )  # fmt: skip
 
 
-def _view(values: Floats) -> Floats:
+def _view(values: Any) -> Floats:
     values.flags.writeable = False
-    return values
+    return np.asarray(values)

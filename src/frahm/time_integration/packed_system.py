@@ -22,15 +22,14 @@ Integers = NDArray[np.int64]
 class Structure(NamedTuple):
     """Where the numbers stand, the same for every system of a batch; lists as addresses, see `frahm.lanes`.
 
-    Rows and columns are places of coordinates in the state of eight lanes. The linear entries are one list; those of
-    `reach` and `input` are kept per element e from start[e] to start[e + 1]. `laws` are the codes of
+    Rows and columns are places of coordinates in the state of eight lanes. Entries of `linear` are kept
+    per row r from start[r] to start[r + 1], those of `reach` and `input` per element likewise. `laws` are the codes of
     `frahm.absorbers.packed`.
     """
 
     size: int
     elements: int
-    linear_count: int
-    linear_row: int
+    linear_start: int
     linear_column: int
     reach_start: int
     reach_column: int
@@ -96,12 +95,12 @@ def pack_systems(systems: Sequence[System]) -> PackedSystems:
     lists = tuple(
         np.ascontiguousarray(values, dtype=np.int64)
         for values in (
-            LANES * linear_row, LANES * linear_column,
+            _starts(linear_row, n), LANES * linear_column,
             _starts(reach_element, elements), LANES * reach_column,
             _starts(input_element, elements), LANES * input_row, packed[0][0],
         )
     )  # fmt: skip
-    structure = Structure(n, elements, linear_row.size, *(address(values) for values in lists))
+    structure = Structure(n, elements, *(address(values) for values in lists))
     tables = Numbers(
         linear_values, reach_values, input_values, _columns(np.array([table for _, table in packed])),
         _columns(forcing), _columns(monitor.reshape(count, 2 * n)),

@@ -111,6 +111,7 @@ def propagate(structure, systems, numbers, numbers_at, room, room_at, runs, plan
                 if lanes[_LANDED + lane] > 0.0 and _next_leg(lanes, lane, plan):
                     continue
                 _finish(lanes, lane, run[lane], start, window, runs, findings)
+                findings.samples[run[lane], sample[lane] :] = np.nan  # of a trajectory that failed
                 busy -= 1
             run[lane] = -1
             if waiting < runs.state.shape[0]:

@@ -23,12 +23,13 @@ def derivative(structure, numbers, turns, y, k):
     """Put the time derivative of the state `y` at forcing phase `turns` [turns] into `k`."""
     half = structure.size * LANES
     drive = cos_turns(turns)
-    for i in range(0, half, LANES):
+    for row in range(structure.size):
+        i = row * LANES
         store(k, i, load(y, half + i))
-        store(k, half + i, drive * load(numbers.forcing, i))
-    for e in range(structure.linear_count):
-        into, source = half + integer(structure.linear_row, e), integer(structure.linear_column, e)
-        store(k, into, load(k, into) + load(numbers.linear, e * LANES) * load(y, source))
+        total = drive * load(numbers.forcing, i)
+        for e in range(integer(structure.linear_start, row), integer(structure.linear_start, row + 1)):
+            total = total + load(numbers.linear, e * LANES) * load(y, integer(structure.linear_column, e))
+        store(k, half + i, total)
     for element in range(structure.elements):
         z, w = spread(0.0), spread(0.0)
         for e in range(integer(structure.reach_start, element), integer(structure.reach_start, element + 1)):
@@ -192,36 +193,41 @@ def dense_coefficients(m, h, start, end, k, dense):
     for i in range(0, m, LANES):
         first, change = load(start, i), load(end, i) - load(start, i)
         initial, final = h * load(k, i), h * load(k, 12 * m + i)
-        store(dense, i, first)
-        store(dense, m + i, change)
-        store(dense, 2 * m + i, initial - change)
-        store(dense, 3 * m + i, change - final - (initial - change))
+        # Stores last: before a store that might overlap them, every stage would be read again.
         # fmt: off
-        store(dense, 4 * m + i, h * (
+        d4 = h * (
             c.D4_1 * load(k, i) + c.D4_6 * load(k, 5 * m + i) + c.D4_7 * load(k, 6 * m + i)
             + c.D4_8 * load(k, 7 * m + i) + c.D4_9 * load(k, 8 * m + i) + c.D4_10 * load(k, 9 * m + i)
             + c.D4_11 * load(k, 10 * m + i) + c.D4_12 * load(k, 11 * m + i) + c.D4_13 * load(k, 12 * m + i)
             + c.D4_14 * load(k, 13 * m + i) + c.D4_15 * load(k, 14 * m + i) + c.D4_16 * load(k, 15 * m + i)
-        ))
-        store(dense, 5 * m + i, h * (
+        )
+        d5 = h * (
             c.D5_1 * load(k, i) + c.D5_6 * load(k, 5 * m + i) + c.D5_7 * load(k, 6 * m + i)
             + c.D5_8 * load(k, 7 * m + i) + c.D5_9 * load(k, 8 * m + i) + c.D5_10 * load(k, 9 * m + i)
             + c.D5_11 * load(k, 10 * m + i) + c.D5_12 * load(k, 11 * m + i) + c.D5_13 * load(k, 12 * m + i)
             + c.D5_14 * load(k, 13 * m + i) + c.D5_15 * load(k, 14 * m + i) + c.D5_16 * load(k, 15 * m + i)
-        ))
-        store(dense, 6 * m + i, h * (
+        )
+        d6 = h * (
             c.D6_1 * load(k, i) + c.D6_6 * load(k, 5 * m + i) + c.D6_7 * load(k, 6 * m + i)
             + c.D6_8 * load(k, 7 * m + i) + c.D6_9 * load(k, 8 * m + i) + c.D6_10 * load(k, 9 * m + i)
             + c.D6_11 * load(k, 10 * m + i) + c.D6_12 * load(k, 11 * m + i) + c.D6_13 * load(k, 12 * m + i)
             + c.D6_14 * load(k, 13 * m + i) + c.D6_15 * load(k, 14 * m + i) + c.D6_16 * load(k, 15 * m + i)
-        ))
-        store(dense, 7 * m + i, h * (
+        )
+        d7 = h * (
             c.D7_1 * load(k, i) + c.D7_6 * load(k, 5 * m + i) + c.D7_7 * load(k, 6 * m + i)
             + c.D7_8 * load(k, 7 * m + i) + c.D7_9 * load(k, 8 * m + i) + c.D7_10 * load(k, 9 * m + i)
             + c.D7_11 * load(k, 10 * m + i) + c.D7_12 * load(k, 11 * m + i) + c.D7_13 * load(k, 12 * m + i)
             + c.D7_14 * load(k, 13 * m + i) + c.D7_15 * load(k, 14 * m + i) + c.D7_16 * load(k, 15 * m + i)
-        ))
+        )
         # fmt: on
+        store(dense, i, first)
+        store(dense, m + i, change)
+        store(dense, 2 * m + i, initial - change)
+        store(dense, 3 * m + i, change - final - (initial - change))
+        store(dense, 4 * m + i, d4)
+        store(dense, 5 * m + i, d5)
+        store(dense, 6 * m + i, d6)
+        store(dense, 7 * m + i, d7)
 
 
 @kernel
