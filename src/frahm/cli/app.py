@@ -9,6 +9,7 @@ import typer
 import frahm
 from frahm.cli import cases
 from frahm.cli.guarded import GuardedGroup
+from frahm.cli.reproduce import reproduce
 
 app = typer.Typer(
     name="frahm",
@@ -21,7 +22,7 @@ app = typer.Typer(
 )
 
 # A command is a function in a module beside this one; what it needs beyond typer it imports when it is called.
-for command in (cases.check, cases.new, cases.cases, cases.schema):
+for command in (cases.check, cases.new, cases.cases, cases.schema, reproduce):
     app.command()(command)
 
 

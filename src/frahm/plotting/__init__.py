@@ -1,0 +1,1 @@
+"""Room `plotting`: static and interactive figures."""
