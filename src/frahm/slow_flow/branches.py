@@ -10,7 +10,7 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.compiled import kernel
-from frahm.slow_flow.eigenvalues import growth_rate
+from frahm.polynomials import growth_rate
 from frahm.slow_flow.kernels import characteristic, equilibria, linear_parts, pipe_amplitude
 from frahm.slow_flow.model import SlowFlow
 from frahm.slow_flow.subdivision import HOPF, SADDLE_NODE, special_points

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from frahm.polynomials import growth_rate, quadratic_factors
 from frahm.slow_flow import SlowFlow
-from frahm.slow_flow.eigenvalues import growth_rate, quadratic_factors
 from frahm.slow_flow.kernels import (
     EVEN,
     ODD,

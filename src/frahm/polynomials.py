@@ -1,4 +1,4 @@
-"""Eigenvalues of the slow flow from its characteristic polynomial, in closed form and polished."""
+"""Roots of cubics and quartics in closed form, polished: compiled, because every map and every curve needs them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,49 @@ import math
 import numpy as np
 
 from frahm.compiled import kernel
+
+_SQRT3 = math.sqrt(3.0)
+
+
+@kernel
+def _polish(m, c, h):
+    """Two Newton steps on m^3 + 2 c m^2 + m = h; at a double root the iterate is kept."""
+    for _ in range(2):
+        slope = (3.0 * m + 4.0 * c) * m + 1.0
+        if slope == 0.0:
+            break
+        step = (((m + 2.0 * c) * m + 1.0) * m - h) / slope
+        if abs(step) > 0.1 * abs(m):
+            break
+        m -= step
+    return m
+
+
+@kernel
+def universal_roots(c, h):
+    """Positive roots of m^3 + 2 c m^2 + m = h for -1 <= c <= 1, h > 0, ascending: their number, then three values."""
+    P = 1.0 - 4.0 / 3.0 * c * c
+    R = (16.0 / 27.0 * c * c - 2.0 / 3.0) * c - h
+    half, third = 0.5 * R, P / 3.0
+    D = half * half + third * third * third
+    shift = 2.0 / 3.0 * c
+    if D > 0.0 or P >= 0.0:
+        u = np.cbrt(abs(half) + math.sqrt(max(D, 0.0)))
+        if half > 0.0:
+            u = -u
+        m = (u - third / u if u != 0.0 else 0.0) - shift
+        if m < 1e-3:  # cancellation against the shift: start from the linear solution instead
+            m = h - 2.0 * c * h * h
+        return 1, _polish(m, c, h), math.nan, math.nan
+    amplitude = 2.0 * math.sqrt(-third)
+    angle = math.acos(min(1.0, max(-1.0, 3.0 * R / (P * amplitude)))) / 3.0
+    co, si = math.cos(angle), math.sin(angle)
+    high = _polish(amplitude * co - shift, c, h)
+    if c > 0.0:  # the two other real roots are negative
+        return 1, high, math.nan, math.nan
+    low = amplitude * 0.5 * (-co - _SQRT3 * si) - shift
+    mid = amplitude * 0.5 * (-co + _SQRT3 * si) - shift
+    return 3, _polish(low, c, h), _polish(mid, c, h), high
 
 
 @kernel

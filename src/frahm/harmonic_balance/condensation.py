@@ -1,0 +1,134 @@
+"""The host condensed exactly: what the nonlinear elements feel of a linear structure with any number of modes.
+
+With x = P u + Q y, where u holds the elements' relative coordinates and y the rest, the host's part of the equations
+at the complex frequency s is the dynamic stiffness
+
+    S(s) = D11 - D12 D22^-1 D21 ,   D = s^2 M + s C + K  in the coordinates (u, y) ,
+
+and D22^-1 is a sum over the poles of the structure with its elements held. Linear springs and dampers of the
+elements belong to C and K. At harmonic 0 a sink without linear spring has S = 0, which is no singularity here.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy.linalg
+
+from frahm.absorbers import Polynomial
+from frahm.absorbers.packed import pack_laws
+from frahm.arrays import Complexes, Floats
+from frahm.errors import ParameterError
+from frahm.systems import System
+
+
+class Problem(NamedTuple):
+    """Arrays of the condensed problem for the compiled kernels.
+
+    r relative coordinates, E nonlinear elements, p poles, n coordinates; rows 0 and 1 of the outputs are the pipe
+    displacement and the first element's z, the others all coordinates.
+    """
+
+    M11: Floats  # (r, r)
+    C11: Floats
+    K11: Floats
+    poles: Complexes  # (p,)
+    a2: Complexes  # (p, r): D12(s) R_j = s^2 a2 + s a1 + a0
+    a1: Complexes
+    a0: Complexes
+    b2: Complexes  # (p, r): L_j D21(s) = s^2 b2 + s b1 + b0
+    b1: Complexes
+    b0: Complexes
+    force_u: Complexes  # (r,)
+    force_y: Complexes  # (p,)
+    out_u: Floats  # (2 + n, r)
+    out_y: Complexes  # (2 + n, p)
+    directions: Floats  # (r, E): z_e = directions[:, e] . u
+    codes: np.ndarray  # (E, 3)
+    table: Floats
+    degree: int  # of the polynomial forces; 0 if a law is no polynomial
+    odd: bool  # whether every law is odd, so that odd harmonics form a closed set
+
+
+def condense(system: System) -> Problem:
+    """Condense a system with at least one nonlinear element onto the elements' coordinates.
+
+    Raises
+    ------
+    ParameterError
+        If the structure could move freely with its elements held.
+    """
+    C, K = linear_part(system)
+    active = [element for element in system.elements if not element.law.is_linear]
+    N = np.column_stack([element.direction for element in active])
+    P, directions = _relative_coordinates(N)
+    r = P.shape[1]
+    Q = scipy.linalg.null_space(N.T)
+    T = np.column_stack([P, Q])
+    blocks = [T.T @ matrix @ T for matrix in (system.mass, C, K)]
+    f = T.T @ system.forcing
+    poles, R, L = _poles(*(block[r:, r:] for block in blocks))
+    first = system.elements[0].direction if system.elements else np.zeros(system.size)
+    outputs = np.vstack([system.output, first, np.eye(system.size)]) @ T
+    a = [np.ascontiguousarray((block[:r, r:] @ R).T) for block in blocks]
+    b = [np.ascontiguousarray(L @ block[r:, :r]) for block in blocks]
+    nonlinear = [_without_linear_part(element.law) for element in active]
+    codes, table = pack_laws(nonlinear)
+    return Problem(
+        *(np.ascontiguousarray(block[:r, :r]) for block in blocks),
+        poles,
+        *a,
+        *b,
+        f[:r].astype(complex),
+        L @ f[r:],
+        np.ascontiguousarray(outputs[:, :r]),
+        np.ascontiguousarray(outputs[:, r:] @ R),
+        np.ascontiguousarray(directions),
+        codes,
+        table,
+        max(law.coefficients.size for law in nonlinear),
+        all(law.is_odd for law in nonlinear),
+    )
+
+
+def linear_part(system: System) -> tuple[Floats, Floats]:
+    """C [N s/m] and K [N/m] with the linear springs and dampers of all elements."""
+    C, K = np.array(system.damping), np.array(system.stiffness)
+    for element in system.elements:
+        outer = np.outer(element.direction, element.direction)
+        C += element.law.damping * outer
+        K += element.law.coefficients[0] * outer
+    return C, K
+
+
+def _without_linear_part(law: Polynomial) -> Polynomial:
+    return Polynomial(np.concatenate([[0.0], law.coefficients[1:]]))
+
+
+def _relative_coordinates(N: Floats) -> tuple[Floats, Floats]:
+    """P with x = P u + ..., and directions with z_e = directions[:, e] . u; u = z where the elements allow it."""
+    rank = np.linalg.matrix_rank(N)
+    if rank == N.shape[1]:
+        return np.linalg.solve(N.T @ N, N.T).T, np.eye(rank)
+    V = np.linalg.svd(N)[0][:, :rank]
+    return V, V.T @ N
+
+
+def _poles(M: Floats, C: Floats, K: Floats) -> tuple[Complexes, Complexes, Complexes]:
+    """Poles lam_j and vectors R (m, 2m), L (2m, m) with (s^2 M + s C + K)^-1 = sum_j R_j L_j/(s - lam_j)."""
+    m = M.shape[0]
+    if m == 0:
+        return np.zeros(0, complex), np.zeros((0, 0), complex), np.zeros((0, 0), complex)
+    inverse = np.linalg.inv(M)
+    A = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ K, -inverse @ C]])
+    scale = np.sqrt(np.linalg.norm(A[m:, :m])) or 1.0  # balance displacement against velocity
+    balance = np.concatenate([np.full(m, scale), np.ones(m)])
+    lam, V = np.linalg.eig(balance[:, None] * A / balance)
+    if np.linalg.cond(V) > 1e10:
+        raise ParameterError(
+            "system", "a structure that can drift or has a defective mode with its elements held",
+            "a structure that stays supported when the coordinates of its elements are fixed",
+        )  # fmt: skip
+    W = np.linalg.inv(V)
+    return lam, np.ascontiguousarray(V[:m] / scale), np.ascontiguousarray(W[:, m:] @ inverse)

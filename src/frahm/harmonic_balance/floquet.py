@@ -1,0 +1,241 @@
+"""Floquet multipliers from the variational equation about a periodic orbit, integrated by Taylor series.
+
+M dx'' + C dx' + (K + sum_e n_e p_e(t) n_e^T) dx = 0 with p_e the slope of the element's force along the orbit. On each
+step p_e is a polynomial through Chebyshev points and the solution a power series. For an odd orbit half a period
+suffices: with the symmetry (x, t) -> (-x, t + T/2) the half map -Phi(T/2) has the multipliers' square roots; +1 is a
+saddle-node, -1 a loss of symmetry, a complex pair a Neimark-Sacker point.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from frahm.absorbers.packed import law_force_and_slopes
+from frahm.arrays import Floats
+from frahm.compiled import kernel
+from frahm.harmonic_balance.condensation import linear_part
+from frahm.polynomials import quadratic_factors
+from frahm.systems import System
+
+_NODES = 9
+_ORDER = 14
+_ADVANCE = 1.2  # fastest motion per step [rad]
+_TURN = 2.0  # highest harmonic per step [rad]
+_POINTS = 0.5 - 0.5 * np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
+_TO_POWERS = np.linalg.inv(_POINTS[:, None] ** np.arange(_NODES))
+
+
+class Variation(NamedTuple):
+    """Matrices of the variational equation: M^-1 K, M^-1 C (n, n), M^-1 N (n, E), N^T (E, n), fastest frequency."""
+
+    K: Floats
+    C: Floats
+    push: Floats
+    feel: Floats
+    fastest: float
+    hardest: Floats  # (E,): n^T M^-1 n, stiffness to frequency squared
+
+
+def variation_of(system: System) -> Variation:
+    """Matrices of the variational equation of a system; elements with linear laws belong to C and K."""
+    C, K = linear_part(system)
+    active = [element.direction for element in system.elements if not element.law.is_linear]
+    N = np.column_stack(active) if active else np.zeros((system.size, 0))
+    inverse = np.linalg.inv(system.mass)
+    A = np.block([[np.zeros_like(K), np.eye(system.size)], [-inverse @ K, -inverse @ C]])
+    return Variation(
+        np.ascontiguousarray(inverse @ K),
+        np.ascontiguousarray(inverse @ C),
+        np.ascontiguousarray(inverse @ N),
+        np.ascontiguousarray(N.T),
+        float(np.max(np.abs(np.linalg.eigvals(A)))),
+        np.einsum("ie,ij,je->e", N, inverse, N),
+    )
+
+
+@kernel
+def monodromy(pb, va, H, odd, W, u, Phi):
+    """Fundamental matrix Phi (2n, 2n) over half a period (odd orbits) or a whole one; states (x, v).
+
+    u (H + 5, r) are the harmonics of the relative coordinates.
+    """
+    n, E = va.K.shape[0], va.feel.shape[0]
+    r = pb.M11.shape[0]
+    m = 2 * n
+    span = (math.pi if odd else 2.0 * math.pi) / W
+    slope = np.empty(E)
+    _steepest(pb, H, odd, u, slope)
+    square = va.fastest**2
+    for e in range(E):
+        square += va.hardest[e] * slope[e]
+    steps = int(math.ceil(max(span * math.sqrt(square) / _ADVANCE, span * W * _reach(H, u) / _TURN, 3.0)))
+    h = span / steps
+    Phi[:] = 0.0
+    for i in range(m):
+        Phi[i, i] = 1.0
+    X, V = np.empty((_ORDER + 1, n, m)), np.empty((_ORDER + 1, n, m))
+    Z = np.empty((_ORDER + 1, E, m))
+    values, p = np.empty(_NODES), np.empty((E, _NODES))
+    for step in range(steps):
+        for e in range(E):
+            for j in range(_NODES):
+                z = element_displacement(pb, e, H, odd, u, W * h * (step + _POINTS[j]))
+                _, values[j], _ = law_force_and_slopes(
+                    pb.codes[e, 0], pb.codes[e, 1], pb.codes[e, 2], pb.table, z, 0.0
+                )
+            for i in range(_NODES):
+                total = 0.0
+                for j in range(_NODES):
+                    total += _TO_POWERS[i, j] * values[j]
+                p[e, i] = total
+        for i in range(n):
+            for c in range(m):
+                X[0, i, c], V[0, i, c] = Phi[i, c], Phi[n + i, c]
+        _taylor_step(va, p, h, X, V, Z)
+        for i in range(n):
+            for c in range(m):
+                x, v = X[_ORDER, i, c], V[_ORDER, i, c]
+                for k in range(_ORDER - 1, -1, -1):
+                    x += X[k, i, c]
+                    v += V[k, i, c]
+                Phi[i, c], Phi[n + i, c] = x, v
+
+
+@kernel
+def element_displacement(pb, e, H, odd, u, tau):
+    """z_e at the phase tau [rad] from the harmonics u (H + 5, r)."""
+    first, step = (1, 2) if odd else (0, 1)
+    c1, s1 = math.cos(tau), math.sin(tau)
+    c, s = (c1, s1) if odd else (1.0, 0.0)
+    if odd:
+        c1, s1 = c1 * c1 - s1 * s1, 2.0 * c1 * s1
+    z = 0.0
+    for k in range(first, H + 1, step):
+        for i in range(u.shape[1]):
+            z += pb.directions[i, e] * (u[k, i].real * c - u[k, i].imag * s)
+        c, s = c * c1 - s * s1, s * c1 + c * s1
+    return z
+
+
+@kernel
+def _reach(H, u):
+    """Highest harmonic that matters for the course of the slope within a step."""
+    largest = 0.0
+    for k in range(H + 1):
+        for i in range(u.shape[1]):
+            largest = max(largest, abs(u[k, i]))
+    reach = 1
+    for k in range(H + 1):
+        for i in range(u.shape[1]):
+            if abs(u[k, i]) > 1e-4 * largest:
+                reach = k
+    return reach
+
+
+@kernel
+def _steepest(pb, H, odd, u, slope):
+    """Largest slope of every element along the orbit, seen at the samples of harmonic balance."""
+    for e in range(slope.size):
+        slope[e] = 0.0
+        for j in range(2 * H + 6):
+            z = element_displacement(pb, e, H, odd, u, math.pi * (1.0 if odd else 2.0) * j / (2 * H + 6))
+            _, here, _ = law_force_and_slopes(pb.codes[e, 0], pb.codes[e, 1], pb.codes[e, 2], pb.table, z, 0.0)
+            slope[e] = max(slope[e], abs(here))
+
+
+@kernel
+def _taylor_step(va, p, h, X, V, Z):
+    """Power series of all columns over one step, in the time scaled to the step: term k is the k-th summand."""
+    n, E = va.K.shape[0], va.feel.shape[0]
+    m = X.shape[2]
+    for k in range(_ORDER):
+        factor = h / (k + 1.0)
+        for e in range(E):
+            for c in range(m):
+                Z[k, e, c] = 0.0
+            for j in range(n):
+                feel = va.feel[e, j]
+                if feel != 0.0:
+                    for c in range(m):
+                        Z[k, e, c] += feel * X[k, j, c]
+        for i in range(n):
+            for c in range(m):
+                X[k + 1, i, c] = factor * V[k, i, c]
+                V[k + 1, i, c] = 0.0
+            for j in range(n):
+                stiff, damp = va.K[i, j], va.C[i, j]
+                if stiff != 0.0 or damp != 0.0:
+                    for c in range(m):
+                        V[k + 1, i, c] -= stiff * X[k, j, c] + damp * V[k, j, c]
+            for e in range(E):
+                push = va.push[i, e]
+                if push != 0.0:
+                    for q in range(min(k, _NODES - 1) + 1):
+                        weight = push * p[e, q]
+                        for c in range(m):
+                            V[k + 1, i, c] -= weight * Z[k - q, e, c]
+            for c in range(m):
+                V[k + 1, i, c] *= factor
+
+
+@kernel
+def shifted_eigenvalues(B, out):
+    """Eigenvalues of the real matrix B into out: closed form for 4 x 4, LAPACK otherwise."""
+    m = B.shape[0]
+    if m != 4:
+        out[:] = np.linalg.eigvals(B.astype(np.complex128))
+        return
+    # Faddeev-LeVerrier
+    A = B.copy()
+    c1 = -(A[0, 0] + A[1, 1] + A[2, 2] + A[3, 3])
+    for i in range(4):
+        A[i, i] += c1
+    A = B @ A
+    c2 = -(A[0, 0] + A[1, 1] + A[2, 2] + A[3, 3]) / 2.0
+    for i in range(4):
+        A[i, i] += c2
+    A = B @ A
+    c3 = -(A[0, 0] + A[1, 1] + A[2, 2] + A[3, 3]) / 3.0
+    for i in range(4):
+        A[i, i] += c3
+    A = B @ A
+    c4 = -(A[0, 0] + A[1, 1] + A[2, 2] + A[3, 3]) / 4.0
+    a, b, g, d = quadratic_factors(c1, c2, c3, c4)
+    _pair(a, b, out, 0)
+    _pair(g, d, out, 2)
+
+
+@kernel
+def _pair(a, b, out, at):
+    disc = 0.25 * a * a - b
+    if disc < 0.0:
+        root = math.sqrt(-disc)
+        out[at], out[at + 1] = complex(-0.5 * a, root), complex(-0.5 * a, -root)
+    else:
+        big = -0.5 * a - math.copysign(math.sqrt(disc), a)
+        out[at] = complex(big, 0.0)
+        out[at + 1] = complex(b / big if big != 0.0 else 0.0, 0.0)
+
+
+@kernel
+def map_multipliers(pb, va, H, odd, W, u, out):
+    """Eigenvalues of the half map -Phi(T/2) (odd orbits) or of Phi(T), sorted by descending modulus."""
+    m = 2 * va.K.shape[0]
+    Phi = np.empty((m, m))
+    monodromy(pb, va, H, odd, W, u, Phi)
+    for i in range(m):
+        for j in range(m):
+            Phi[i, j] = (-Phi[i, j] if odd else Phi[i, j]) - (1.0 if i == j else 0.0)
+    shifted_eigenvalues(Phi, out)
+    for i in range(m):
+        out[i] += 1.0
+    for i in range(1, m):
+        value = out[i]
+        j = i - 1
+        while j >= 0 and abs(out[j]) < abs(value):
+            out[j + 1] = out[j]
+            j -= 1
+        out[j + 1] = value

@@ -1,0 +1,179 @@
+"""What a point of a branch means: amplitudes, peaks, multipliers; and points between two points of a branch."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from frahm.compiled import kernel
+from frahm.harmonic_balance.floquet import map_multipliers
+from frahm.harmonic_balance.kernels import fourier_tables, harmonics_of, output_harmonic, sample_count, unknowns
+from frahm.harmonic_balance.newton import correct, resize, tangent
+
+
+@kernel
+def peak_of(x, H, odd):
+    """Largest |Re sum_k x_k e^{ik tau}| over a period: best sample, then Newton on the derivative."""
+    N = max(32, 4 * H + 8)
+    first, step = (1, 2) if odd else (0, 1)
+    span = math.pi if odd else 2.0 * math.pi
+    best, at = -1.0, 0.0
+    for j in range(N):
+        tau = span * j / N
+        value = abs(_series(x, H, first, step, tau)[0])
+        if value > best:
+            best, at = value, tau
+    for _ in range(4):
+        value, slope, curve = _series(x, H, first, step, at)
+        if curve == 0.0:
+            break
+        move = slope / curve
+        if abs(move) > span / N:
+            break
+        at -= move
+    return max(best, abs(_series(x, H, first, step, at)[0]))
+
+
+@kernel
+def _series(x, H, first, step, tau):
+    value = slope = curve = 0.0
+    c1, s1 = math.cos(step * tau), math.sin(step * tau)
+    c, s = math.cos(first * tau), math.sin(first * tau)
+    for k in range(first, H + 1, step):
+        re, im = x[k].real, x[k].imag
+        a, b = re * c - im * s, re * s + im * c
+        value += a
+        slope -= k * b
+        curve -= k * k * a
+        c, s = c * c1 - s * s1, s * c1 + c * s1
+    return value, slope, curve
+
+
+@kernel
+def output_series(pb, H, odd, W, u, row, x):
+    """Harmonics x (H + 1,) of an output row; u (H + 5, r)."""
+    first, step = (1, 2) if odd else (0, 1)
+    x[:] = 0j
+    for k in range(first, H + 1, step):
+        x[k] = output_harmonic(pb, k, W, u[k], row)
+
+
+@kernel
+def describe(pb, va, odd, ys, Hs, columns, multipliers):
+    """Fill columns (points, 5) with Omega, |X1|, |Z1|, max |x|, max |z| and multipliers (points, m) of the map."""
+    for i in range(Hs.size):
+        H = Hs[i]
+        W = ys[i, unknowns(pb, H, odd)]
+        u = np.empty((H + 5, pb.M11.shape[0]), np.complex128)
+        harmonics_of(pb, H, odd, ys[i], u)
+        x = np.empty(H + 1, np.complex128)
+        columns[i, 0] = W
+        for row in range(2):
+            output_series(pb, H, odd, W, u, row, x)
+            columns[i, 1 + row] = abs(x[1])
+            columns[i, 3 + row] = peak_of(x, H, odd)
+        map_multipliers(pb, va, H, odd, W, u, multipliers[i])
+
+
+@kernel
+def between(pb, odd, ya, ta, yb, tb, H, fraction, x_scale, w_scale, y, t):
+    """Point y and scaled unit tangent t where the hyperplane across the chord from a to b cuts the branch.
+
+    Both ends have the same number of harmonics H; the start is their Hermite interpolation. Returns convergence.
+    """
+    n = unknowns(pb, H, odd)
+    size = n + 1
+    J, A, pivots = np.empty((size, size)), np.empty((size, size)), np.empty(size, np.int64)
+    normal = np.zeros(size)
+    length = 0.0
+    for j in range(size):
+        scale = w_scale if j == n else x_scale
+        normal[j] = (yb[j] - ya[j]) / scale
+        length += normal[j] ** 2
+    length = math.sqrt(length)
+    f = fraction
+    h00, h10 = (1.0 + 2.0 * f) * (1.0 - f) ** 2, f * (1.0 - f) ** 2
+    h01, h11 = f * f * (3.0 - 2.0 * f), f * f * (f - 1.0)
+    offset = 0.0
+    for j in range(size):
+        scale = w_scale if j == n else x_scale
+        normal[j] /= length
+        y[j] = h00 * ya[j] + h01 * yb[j] + length * scale * (h10 * ta[j] + h11 * tb[j])
+        offset += normal[j] * (ya[j] + f * (yb[j] - ya[j])) / scale
+    co, si = fourier_tables(H, odd, sample_count(pb, H, odd))
+    ok, _, _ = correct(pb, H, odd, y, normal, offset, x_scale, w_scale, co, si, J, A, pivots, 1e-10, 8)
+    if ok:
+        tangent(A, pivots, n, normal, t)
+    return ok
+
+
+@kernel
+def _critical(pb, va, odd, H, y, t, rank, multipliers):
+    """Test function at a point: dOmega/ds for rank < 0, otherwise log of the rank-th largest multiplier modulus."""
+    n = unknowns(pb, H, odd)
+    u = np.empty((H + 5, pb.M11.shape[0]), np.complex128)
+    harmonics_of(pb, H, odd, y, u)
+    map_multipliers(pb, va, H, odd, y[n], u, multipliers)
+    return t[n] if rank < 0 else math.log(abs(multipliers[rank]))
+
+
+@kernel
+def locate(pb, va, odd, ya, ta, Ha, yb, tb, Hb, rank, x_scale, w_scale, y, t, multipliers):
+    """Root of a test function on the branch between a and b by the Illinois method.
+
+    y, t receive the point, `multipliers` those of the map there. Returns (converged, H, half-width in Omega).
+    """
+    H = max(Ha, Hb)
+    n = unknowns(pb, H, odd)
+    a, b = np.zeros(n + 1), np.zeros(n + 1)
+    sa, sb = np.zeros(n + 1), np.zeros(n + 1)
+    _copy(pb, odd, ya, ta, Ha, H, a, sa)
+    _copy(pb, odd, yb, tb, Hb, H, b, sb)
+    fa = _critical(pb, va, odd, H, a, sa, rank, multipliers)
+    fb = _critical(pb, va, odd, H, b, sb, rank, multipliers)
+    lo, hi = 0.0, 1.0
+    if fa * fb > 0.0:
+        return False, H, 0.0
+    width = abs(b[n] - a[n])
+    last, f_last = a[n], fa
+    for iteration in range(60):
+        middle = 0.5 * (lo + hi) if fa == fb else (lo * fb - hi * fa) / (fb - fa)
+        if not between(pb, odd, a, sa, b, sb, H, middle, x_scale, w_scale, y, t):
+            return False, H, width
+        f = _critical(pb, va, odd, H, y, t, rank, multipliers)
+        moved = abs(y[n] - last)
+        rest = moved * abs(f) / abs(f - f_last) if f != f_last else 0.0  # what one more secant step would move
+        last, f_last = y[n], f
+        if abs(f) < 1e-7 and rest < 1e-11 * last:
+            return True, H, rest + 1e-12 * last
+        if f * fb < 0.0:
+            lo, fa = hi, fb
+            hi, fb = middle, f
+        else:
+            fa *= 0.5
+            hi, fb = middle, f
+    return False, H, width
+
+
+@kernel
+def _copy(pb, odd, y, t, H, H_new, y_new, t_new):
+    n = unknowns(pb, H, odd)
+    m = unknowns(pb, H_new, odd)
+    y_new[: min(n, m)] = y[: min(n, m)]
+    t_new[: min(n, m)] = t[: min(n, m)]
+    y_new[m], t_new[m] = y[n], t[n]
+
+
+@kernel
+def same_harmonics(pb, odd, y, t, H, H_new, y_new, t_new):
+    """Copy a point and its tangent to another number of harmonics."""
+    y_new[:] = 0.0
+    t_new[:] = 0.0
+    _copy(pb, odd, y, t, H, H_new, y_new, t_new)
+
+
+@kernel
+def shrink(pb, H, H_new, odd, y):
+    """Change the number of harmonics of a stored point in place."""
+    resize(pb, H, H_new, odd, y)

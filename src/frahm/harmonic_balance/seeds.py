@@ -1,0 +1,138 @@
+"""Where branches are looked for: every root of the first-harmonic problem, and of the superharmonic ones.
+
+With one nonlinear element whose spring is a polynomial, the first-harmonic problem S Z + k(|Z|^2) Z = F is one
+polynomial in |Z|^2, so its roots are known completely at any frequency; the same holds for a free third harmonic beside
+a given first one. With several elements the roots are searched by Newton's method from a fixed, spread set of starts:
+the result says so.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import qmc
+
+from frahm.arrays import Complexes, Floats
+from frahm.compiled import kernel
+from frahm.harmonic_balance.condensation import Problem
+from frahm.harmonic_balance.kernels import stiffness, unknowns
+from frahm.harmonic_balance.newton import solve_at
+from frahm.polynomials import universal_roots
+
+_STARTS = 48
+
+
+@dataclass(frozen=True)
+class Seed:
+    """A start for Newton's method: Omega and complex harmonics {k: (r,)}."""
+
+    frequency: float
+    harmonics: dict[int, Complexes]
+
+
+@kernel
+def cubic_roots(S, F, k):
+    """|Z|^2 of all solutions of S Z + k |Z|^2 Z = F, ascending: their number and three values."""
+    D, load = abs(S) ** 2, abs(F) ** 2
+    if k == 0.0 or load == 0.0 or D == 0.0:
+        if D == 0.0 and k != 0.0 and load > 0.0:
+            return 1, np.cbrt(load / (k * k)), math.nan, math.nan
+        return (1 if D > 0.0 else 0), (load / D if D > 0.0 else math.nan), math.nan, math.nan
+    c = math.copysign(1.0, k) * S.real / math.sqrt(D)
+    count, m1, m2, m3 = universal_roots(c, abs(k) * load / D**1.5)
+    scale = math.sqrt(D) / abs(k)
+    return count, m1 * scale, m2 * scale, m3 * scale
+
+
+@kernel
+def count_cubic(pb, Ws, k, counts, excess):
+    """Number of first-harmonic roots at every frequency and, where there is one, how far three are away.
+
+    `excess` is the discriminant of the cubic, positive where there are three roots.
+    """
+    S, dS = np.empty((1, 1), np.complex128), np.empty((1, 1), np.complex128)
+    f, df = np.empty(1, np.complex128), np.empty(1, np.complex128)
+    for i in range(Ws.size):
+        stiffness(pb, 1j * Ws[i], S, dS, f, df)
+        counts[i] = cubic_roots(S[0, 0], f[0], k)[0]
+        D = abs(S[0, 0]) ** 2
+        c = math.copysign(1.0, k) * S[0, 0].real / math.sqrt(D)
+        h = abs(k) * abs(f[0]) ** 2 / D**1.5
+        excess[i] = 4.0 * c * c - 4.0 + h * (32.0 * c * c * c - 36.0 * c - 27.0 * h)
+
+
+def stiffness_at(pb: Problem, k: int, W: float) -> tuple[Complexes, Complexes]:
+    """S (r, r) [N/m] and condensed force (r,) [N] at harmonic k of Omega = W [rad/s]."""
+    r = pb.M11.shape[0]
+    S, dS = np.empty((r, r), complex), np.empty((r, r), complex)
+    f, df = np.empty(r, complex), np.empty(r, complex)
+    stiffness(pb, 1j * k * W, S, dS, f, df)
+    return S, f
+
+
+def spring_polynomial(pb: Problem) -> Floats | None:
+    """Coefficients e_i of k(N) = sum_i e_i N^i, the equivalent stiffness at N = |Z|^2, for one polynomial element."""
+    if pb.directions.shape != (1, 1) or pb.degree == 0:
+        return None
+    start, count = pb.codes[0, 1], pb.codes[0, 2]
+    c = pb.table[start + 1 : start + 1 + count][::-1]  # c_1 ... c_p
+    e = np.zeros((count + 1) // 2)
+    for k in range(1, count + 1, 2):
+        e[(k - 1) // 2] = c[k - 1] * math.comb(k, (k - 1) // 2) / 2 ** (k - 1)
+    return e * pb.directions[0, 0] ** 2 ** np.arange(1, e.size + 1)
+
+
+def amplitude_roots(S: complex, F: complex, e: Floats) -> Floats:
+    """All |Z|^2 > 0 with |S + k(N)|^2 N = |F|^2, ascending."""
+    if e.size == 2 and e[0] == 0:
+        count, *roots = cubic_roots(complex(S), complex(F), e[1])
+        return np.array(roots[:count])
+    real = np.polynomial.Polynomial([S.real + e[0], *e[1:]])
+    polynomial = np.polynomial.Polynomial([0, 1]) * (real * real + S.imag**2) - abs(F) ** 2
+    roots = polynomial.trim().roots()
+    keep = (np.abs(roots.imag) < 1e-7 * np.abs(roots)) & (roots.real > 0)
+    return np.sort(roots[keep].real)
+
+
+def single_element_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
+    """All first-harmonic roots at one frequency, and those with a large free third harmonic beside each of them."""
+    S, F = stiffness_at(pb, 1, W)
+    S3, _ = stiffness_at(pb, 3, W)
+    seeds = []
+    for N in amplitude_roots(S[0, 0], F[0], e):
+        Z = F[0] / (S[0, 0] + np.polynomial.polynomial.polyval(N, e))
+        seeds.append(Seed(W, {1: np.array([Z])}))
+        seeds += [Seed(W, {1: np.array([Z]), 3: np.array([Z3])}) for Z3 in _third_harmonics(S3[0, 0], Z, e)]
+    return seeds
+
+
+def _third_harmonics(S3: complex, Z: complex, e: Floats) -> list[complex]:
+    """Third harmonics that a cubic spring admits beside Z, when there is more than the one that vanishes with it."""
+    if e.size < 2:
+        return []
+    k = e[1]  # 3/4 of the cubic coefficient: k |Z3|^2 Z3 + 2 k |Z|^2 Z3 + k Z^3 / 3
+    shifted, drive = S3 + e[0] + 2 * k * abs(Z) ** 2, -k * Z**3 / 3
+    count, *roots = cubic_roots(shifted, drive, k)
+    return [drive / (shifted + k * N) for N in roots[:count]] if count > 1 else []
+
+
+def searched_seeds(pb: Problem, W: float, scale: float, odd: bool) -> list[Seed]:
+    """First-harmonic solutions with several elements, searched from a fixed spread set of starts."""
+    r = pb.M11.shape[0]
+    sample = qmc.Halton(2 * r, seed=1).random(_STARTS)
+    radius = scale * 10 ** (-2.5 + 2.8 * sample[:, :r])
+    starts = radius * np.exp(2j * np.pi * sample[:, r:])
+    S, F = stiffness_at(pb, 1, W)
+    starts = np.vstack([np.linalg.solve(S, F), np.zeros(r), starts])
+    found: list[Complexes] = []
+    for start in starts:
+        X = np.zeros(unknowns(pb, 1, odd) + 1)
+        at = 0 if odd else 2 * r
+        X[at : at + 2 * r] = np.column_stack([start.real, start.imag]).ravel()
+        ok, _, _ = solve_at(pb, odd, W, X, 1, 1, math.inf, 30)
+        u = X[at : at + 2 * r : 2] + 1j * X[at + 1 : at + 2 * r : 2]
+        if ok and not any(np.max(np.abs(u - other)) < 1e-6 * (np.max(np.abs(u)) + 1e-12 * scale) for other in found):
+            found.append(u)
+    return [Seed(W, {1: u}) for u in found]
