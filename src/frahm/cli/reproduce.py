@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -43,10 +44,8 @@ def _run_with_progress(out: Path, force: bool) -> Reproduction:
     console = Console(stderr=True)
     columns = (TextColumn("{task.description:<20}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("starting", total=step_count(), completed=-1)
-        result = run(out, force=force, progress=lambda words: bar.update(task, advance=1, description=words))
-        bar.update(task, advance=1)
-    return result
+        task, done = bar.add_task("starting", total=step_count()), itertools.count()
+        return run(out, force=force, progress=lambda words: bar.update(task, completed=next(done), description=words))
 
 
 _COLOURS = {"reproduced": "green", "misprint": "yellow", "not-reproduced": "red"}

@@ -51,14 +51,8 @@ def _soft_peak(claim: Claim, computed: Computations) -> Evidence:
 def _middle_unstable(claim: Claim, computed: Computations) -> Evidence:
     (sink,) = claim.sinks
     low, high = unstable_range(computed.curve(sink))
-    rest_low, rest_high = computed.from_rest(sink).modulated_range
-    printed_low, printed_high = (value.value for value in claim.printed)
-    as_motion = READ_OFF.allows(printed_low, rest_low) and READ_OFF.allows(printed_high, rest_high)
-    verb = "agrees" if as_motion else "does not agree either"
-    remark = (
-        f"The exact motion from rest is modulated for sigma from {rest_low:.3f} to {rest_high:.3f} rad/s: the printed"
-        f" range {verb} with that, as a statement about the motion and not about stability."
-    )
+    rest_low, _ = computed.from_rest(sink).modulated_range
+    remark = _motion_remark(claim, computed)
     if rest_low < low:
         remark += f" Between {rest_low:.3f} and {low:.4f} rad/s a stable periodic response exists beside it."
     return Evidence(
@@ -100,15 +94,22 @@ def _left_range(claim: Claim, computed: Computations) -> Evidence:
 def _stiff_unstable(claim: Claim, computed: Computations) -> Evidence:
     (sink,) = claim.sinks
     low, high = unstable_range(computed.curve(sink))
-    rest_low, rest_high = computed.from_rest(sink).modulated_range
     return Evidence(
         _SLOW,
         {"unstable from": low, "unstable to": high},
         beside=(*_averaged_range(computed, sink), *_modulated_range(computed, sink)),
-        remark=(
-            "An unstable response exists throughout this range. The motion is another matter: from rest the exact"
-            f" motion is modulated from {rest_low:.3f} to {rest_high:.3f} rad/s."
-        ),
+        remark=_motion_remark(claim, computed),
+    )
+
+
+def _motion_remark(claim: Claim, computed: Computations) -> str:
+    """Whether a range printed for a sink is the one in which its motion is modulated."""
+    low, high = computed.from_rest(claim.sinks[0]).modulated_range
+    pairs = zip(claim.printed, (low, high), strict=True)
+    verb = "agrees" if all(value.tolerance.allows(value.value, end) for value, end in pairs) else "does not agree"
+    return (
+        f"From rest the exact motion is modulated for sigma from {low:.3f} to {high:.3f} rad/s: taken as a statement"
+        f" about the motion, not about stability, the printed range {verb}."
     )
 
 
