@@ -87,6 +87,7 @@ def linear_response(work: Work) -> Section:
     curve["stable"] = labelled("point", np.full(detuning.size, stable), "locally stable", "1")
     curve["branch"] = labelled("point", np.zeros(detuning.size, dtype=int), "number of the branch", "1")
     curve["piece"] = labelled("point", np.zeros(detuning.size, dtype=int), "piece of the branch inside the window", "1")
+    curve.attrs["method"] = "linear"
     found = {"pipe_peak_max": float(np.max(pipe)), "special_points": [], "growth_rate": growth}
     doubt = () if stable else (f"The linear response does not attract: the growth rate is {growth:.3g} 1/s.",)
     return Section(

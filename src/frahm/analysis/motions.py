@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 SAMPLES_PER_PERIOD = 32
+SLOW_SAMPLES = 8  # per period, of the slowly varying amplitudes
 _MOST_KEPT = 4000  # periods
 _TAIL = 0.25  # of the run
 _HARMONICS_SHOWN = 5.5
@@ -166,6 +167,7 @@ def _motions_dataset(found: list[Motion]) -> xr.Dataset:
         "frequency": each((h.frequency for h in histories), "excitation frequency Omega", "rad/s"),
         "kind": each((KINDS.index(m.kind) for m in found), "kind of motion", "1", codes=_codes()),
         "tail_start": each((m.start + m.tail.time[0] for m in found), "time the tail begins", "s"),
+        "slow_time": rows([m.start + _sliding(m.history) for m in found], "slow", "time of the sliding amplitude"),
         "time": rows([m.start + m.history.time for m in found], "sample", "time"),
         "x1": rows([h.pipe for h in histories], "sample", "pipe displacement"),
         "envelope_time": rows([m.start + _middles(m.history) for m in found], "period", "time of the envelope"),
@@ -179,9 +181,13 @@ def _motions_dataset(found: list[Motion]) -> xr.Dataset:
         pairs = [envelope_of(values(h), SAMPLES_PER_PERIOD) for h in histories]
         variables[f"{name}_low"] = rows([a for a, _ in pairs], "period", f"smallest {text} displacement of a period")
         variables[f"{name}_high"] = rows([b for _, b in pairs], "period", f"largest {text} displacement of a period")
-        slow = [_first_harmonic(h, f"{text}_amplitude") for h in histories]
-        variables[f"{name}_amplitude"] = rows(slow, "period", f"first-harmonic {text} amplitude of a period")
-    attributes = {"keys": "; ".join(p.key for p in points), "samples_per_period": SAMPLES_PER_PERIOD}
+        slow = [_first_harmonic(h, values(h)) for h in histories]
+        variables[f"{name}_amplitude"] = rows(slow, "slow", f"first-harmonic {text} amplitude over a sliding period")
+    attributes = {
+        "keys": "; ".join(p.key for p in points),
+        "samples_per_period": SAMPLES_PER_PERIOD,
+        "slow_samples_per_period": SLOW_SAMPLES,
+    }
     return xr.Dataset(variables, attrs=attributes)
 
 
@@ -213,15 +219,21 @@ def _padded(rows: list[Floats]) -> Floats:
 
 def _middles(history: TimeHistory) -> Floats:
     period = 2 * np.pi / history.frequency
-    return period * (0.5 + np.arange((history.time.size - 1) // SAMPLES_PER_PERIOD))
+    return np.asarray(period * (0.5 + np.arange((history.time.size - 1) // SAMPLES_PER_PERIOD)), dtype=float)
 
 
-def _first_harmonic(history: TimeHistory, name: str) -> Floats:
-    return (
-        np.asarray(history.envelope()[name].values, dtype=float)
-        if history.time.size > SAMPLES_PER_PERIOD
-        else np.empty(0)
-    )
+def _sliding(history: TimeHistory) -> Floats:
+    """Middles of the sliding period."""
+    half = SAMPLES_PER_PERIOD // 2
+    return np.asarray(history.time[half : -half + 1 : SAMPLES_PER_PERIOD // SLOW_SAMPLES])
+
+
+def _first_harmonic(history: TimeHistory, values: Floats) -> Floats:
+    """First-harmonic amplitude over a period that slides along the history, a few values a period."""
+    carried = values * np.exp(-1j * history.frequency * history.time)
+    total = np.concatenate([[0.0], np.cumsum(carried)])
+    mean = (total[SAMPLES_PER_PERIOD:] - total[:-SAMPLES_PER_PERIOD]) / SAMPLES_PER_PERIOD
+    return np.asarray(2 * np.abs(mean[:: SAMPLES_PER_PERIOD // SLOW_SAMPLES]), dtype=float)
 
 
 def _codes() -> str:

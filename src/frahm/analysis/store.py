@@ -28,7 +28,8 @@ def save_analysis(analysis: Analysis, folder: str | Path) -> list[Path]:
         If a file cannot be written.
     """
     folder = Path(folder)
-    analysis.case.to_yaml(folder / CASE_FILE)
+    if not _is_there(analysis, folder / CASE_FILE):  # a file its author commented stays as it is
+        analysis.case.to_yaml(folder / CASE_FILE)
     _write_arrays(analysis, folder / ARRAYS_FILE)
     text = json.dumps(analysis.summary(), indent=2, allow_nan=False, ensure_ascii=False)
     write_text(folder / SUMMARY_FILE, text + "\n")
@@ -98,6 +99,13 @@ def separated(whole: xr.Dataset) -> dict[str, xr.Dataset]:
         data[section] = part.rename(names)
         data[section].attrs = attributes
     return data
+
+
+def _is_there(analysis: Analysis, path: Path) -> bool:
+    try:
+        return path.is_file() and load_case(path).digest == analysis.case.digest
+    except ParameterError:
+        return False
 
 
 def _write_arrays(analysis: Analysis, path: Path) -> None:

@@ -41,7 +41,7 @@ def _from_response(work: Work) -> list[dict[str, Any]]:
     if "response" not in work.done.data:
         return []
     curve = work.done.data["response"]
-    (method,) = work.done.results["response"]
+    method = curve.attrs["method"]
     names = [name for name in ("pipe_peak", "relative_peak") if name in curve]
     stable = curve["stable"].values.astype(bool)
     places = {int(np.argmax(np.where(stable, curve[name].values, -np.inf))) for name in names} if stable.any() else ()

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 import frahm
-from frahm.cli import cases
+from frahm.cli import cases, run
 from frahm.cli.guarded import GuardedGroup
 from frahm.cli.reproduce import reproduce
 
@@ -22,7 +22,17 @@ app = typer.Typer(
 )
 
 # A command is a function in a module beside this one; what it needs beyond typer it imports when it is called.
-for command in (cases.check, cases.new, cases.cases, cases.schema, reproduce):
+for command in (
+    cases.check,
+    cases.new,
+    cases.cases,
+    cases.schema,
+    run.run,
+    run.report,
+    run.show,
+    run.warmup,
+    reproduce,
+):
     app.command()(command)
 
 

@@ -20,6 +20,13 @@ SHORT_NAMES = {
     "period-doubling": "PD",
     "branch-point": "BP",
 }
+KIND_NAMES = {
+    "saddle-node": "saddle-node",
+    "hopf": "Hopf point",
+    "neimark-sacker": "Neimark-Sacker point",
+    "period-doubling": "period doubling",
+    "branch-point": "branch point",
+}
 
 
 @dataclass(frozen=True)

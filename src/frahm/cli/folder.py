@@ -1,0 +1,89 @@
+"""The folder a command writes to: whose it is, and whether it may be written."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from frahm.errors import ParameterError
+
+if TYPE_CHECKING:
+    from frahm.case import Case
+
+_OWN_FILES = ("summary.json", "report.html", "results.nc")
+
+
+def default_folder(case: Case) -> Path:
+    """Folder out/<name of the case>, with nothing in the name a file system could mind."""
+    name = re.sub(r"[^\w.-]+", "-", case.name).strip(".-")
+    return Path("out") / (name or "case")
+
+
+def claim_folder(folder: Path, case: Case, *, force: bool) -> None:
+    """Make sure `folder` exists, can be written, and holds nothing but this case.
+
+    Raises
+    ------
+    ParameterError
+        If it is a file, cannot be written, or holds anything else and `force` is not set.
+    """
+    allowed = "a folder that can be written"
+    try:
+        if folder.exists() and not folder.is_dir():
+            raise ParameterError("--out", str(folder), allowed, hint="It is a file.")
+        folder.mkdir(parents=True, exist_ok=True)
+        occupied = any(folder.iterdir())
+    except OSError as error:
+        raise ParameterError("--out", str(folder), allowed, hint=f"{error.strerror or error}.") from None
+    if occupied and not holds_case(folder, case):
+        if not force:
+            hint = f"{_contents(folder)} --force writes there all the same."
+            raise ParameterError("--out", str(folder), "a new or empty folder, or one of the same case", hint=hint)
+        _forget(folder)
+    if not _same_case(folder / "case.yaml", case):
+        case.to_yaml(folder / "case.yaml")
+
+
+def holds_case(folder: Path, case: Case) -> bool:
+    """Whether the folder holds this very case: by its summary, or by case.yaml if there is no summary yet."""
+    from frahm.case import load_case
+
+    summary = folder / "summary.json"
+    if not summary.exists():
+        return _same_case(folder / "case.yaml", case)
+    try:
+        return load_case(json.loads(summary.read_text(encoding="utf-8"))["case"]).digest == case.digest
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def _same_case(file: Path, case: Case) -> bool:
+    from frahm.case import load_case
+
+    try:
+        return file.is_file() and load_case(file).digest == case.digest
+    except ParameterError:
+        return False
+
+
+def _contents(folder: Path) -> str:
+    if (folder / "summary.json").exists() or (folder / "case.yaml").exists():
+        return "It holds another case."
+    return "It holds other files."
+
+
+def _forget(folder: Path) -> None:
+    """Remove the results of another case, so that they are never taken for those of this one."""
+    own = [folder / name for name in _OWN_FILES]
+    own += [
+        path for pattern in ("response-*", "motion-*", "slow-manifold.*") for path in folder.glob(f"figures/{pattern}")
+    ]
+    for path in own:
+        try:
+            path.unlink(missing_ok=True)
+        except OSError as error:
+            raise ParameterError(
+                "--out", str(folder), "a folder that can be written", hint=f"{path}: {error.strerror}."
+            ) from None

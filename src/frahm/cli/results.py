@@ -1,0 +1,45 @@
+"""The results of an analysis as text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from frahm.analysis import Analysis
+from frahm.report import tables
+
+_POINTS_HEAD = ("", "kind", "sigma rad/s", "Hz", "pipe m", "stroke m", "branch", "status")
+_MOTIONS_HEAD = ("sigma rad/s", "kind", "pipe peak m", "rms m", "stroke m", "without absorber m", "why here")
+
+
+def results_text(analysis: Analysis) -> str:
+    """Verdict, special points, motions, checks and doubts."""
+    return "\n".join(_lines(analysis))
+
+
+def _lines(analysis: Analysis) -> Iterator[str]:
+    case = analysis.case
+    yield f"{case.name}: {case.title}" if case.title else case.name
+    yield ""
+    yield analysis.verdict
+    points = tables.special_point_rows(analysis)
+    if points:
+        yield "\nSpecial points"
+        yield from _columns(_POINTS_HEAD, points)
+    motions = [(r[0], r[2], r[3], r[5], r[6], r[7], r[1]) for r in tables.motion_rows(analysis)]
+    if motions:
+        yield "\nMotions from rest"
+        yield from _columns(_MOTIONS_HEAD, motions)
+    yield "\nChecks"
+    for name, _, sign, detail in tables.check_rows(analysis):
+        yield f"  {sign:<13} {name}. {detail}"
+    if analysis.unverified:
+        yield "\nUnverified"
+        yield from (f"  {sentence}" for sentence in analysis.unverified)
+    yield "\nLimits"
+    yield from (f"  {note}" for note in analysis.notes)
+
+
+def _columns(head: Sequence[str], rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    widths = [max(len(row[i]) for row in (head, *rows)) for i in range(len(head))]
+    for row in (head, *rows):
+        yield "  " + "  ".join(f"{cell:<{width}}" for cell, width in zip(row, widths, strict=True)).rstrip()

@@ -1,0 +1,86 @@
+"""Commands around the analysis of one case: run, report, show, warmup."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from frahm.cli.cases import CaseArgument
+from frahm.cli.guarded import ExitCode
+
+if TYPE_CHECKING:
+    from frahm.analysis import Analysis
+
+FolderArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `frahm run` wrote.")]
+
+
+def run(
+    case: CaseArgument,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder to write to; by default out/<name>.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Write even if the folder holds another case.")] = False,
+) -> None:
+    """Analyse a case and write report.html, summary.json, results.nc and figures."""
+    from frahm.case import load_case
+    from frahm.cli.folder import claim_folder, default_folder
+    from frahm.cli.progress import shown_progress
+
+    loaded = load_case(case)
+    folder = default_folder(loaded) if out is None else out
+    claim_folder(folder, loaded, force=force)
+    with shown_progress() as progress:
+        progress("loading", 0, 1)
+        from frahm.analysis import analyse, save_analysis
+
+        analysis = analyse(loaded, progress=progress)
+        save_analysis(analysis, folder)
+        if not analysis.interrupted:
+            from frahm.report import write_report
+
+            progress("figures and report", 0, 1)
+            write_report(analysis, folder)
+    _conclude(analysis, folder)
+
+
+def report(folder: FolderArgument) -> None:
+    """Build the figures and the report again from the stored results."""
+    from frahm.analysis import load_analysis
+    from frahm.report import write_report
+
+    typer.echo(f"{write_report(load_analysis(folder), folder)} written.")
+
+
+def show(folder: FolderArgument) -> None:
+    """Print what a folder of results says."""
+    from frahm.analysis import load_analysis
+    from frahm.cli.results import results_text
+
+    typer.echo(results_text(load_analysis(folder)))
+
+
+def warmup() -> None:
+    """Compile the numerical kernels, so that the first analysis does not have to."""
+    import time
+
+    from frahm.analysis import analyse
+
+    start = time.perf_counter()
+    analyse("jacket-pipe")
+    typer.echo(f"The kernels are compiled and stored; this took {time.perf_counter() - start:.1f} s.")
+
+
+def _conclude(analysis: Analysis, folder: Path) -> None:
+    """Say what came out, where it is, what is doubtful; end with the exit code for it."""
+    typer.echo(analysis.verdict)
+    if analysis.interrupted:
+        typer.echo(
+            f"Interrupted; what was finished is in {folder}. frahm report {folder} makes a report of it.", err=True
+        )
+        raise typer.Exit(ExitCode.INTERRUPTED)
+    typer.echo(f"Report: {folder / 'report.html'} (numbers: summary.json, arrays: results.nc, figures: figures/)")
+    doubts = [f"{check.name}: {check.status}. {check.detail}" for check in analysis.checks if check.status != "pass"]
+    for doubt in (*doubts, *analysis.unverified):
+        typer.echo(f"frahm: {doubt}", err=True)
+    if not analysis.verified:
+        raise typer.Exit(ExitCode.UNVERIFIED)

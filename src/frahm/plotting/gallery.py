@@ -1,0 +1,42 @@
+"""All figures of an analysis, by file name, in the order a report shows them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from frahm.plotting.static import manifold_figure, motion_figure, response_figure
+from frahm.plotting.style import figure_style, save_figure
+from frahm.plotting.views import motion_views, trajectory_to_show
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+Drawing = tuple[str, Callable[[], "Figure"]]
+
+
+def save_figures(results: dict[str, Any], data: dict[str, xr.Dataset], folder: str | Path) -> list[Path]:
+    """Draw every figure the results allow into an existing folder, as PNG and SVG; return the paths."""
+    paths = []
+    with figure_style():
+        for name, draw in drawings(results, data):
+            paths += save_figure(draw(), Path(folder) / name)
+    return paths
+
+
+def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[Drawing]:
+    """Name and drawing of every figure the results allow."""
+    views = motion_views(results, data)
+    curve, bare = data.get("response"), data.get("without_absorber")
+    if curve is not None:
+        for quantity, name in (("pipe_peak", "response-pipe"), ("relative_peak", "response-absorber")):
+            if quantity in curve:
+                yield name, partial(response_figure, curve, quantity, views, bare)
+    for view in views:
+        yield f"motion-{view.key}", partial(motion_figure, view)
+    if "slow_manifold" in data:
+        folds = results["slow_manifold"]["folds"]
+        yield "slow-manifold", partial(manifold_figure, data["slow_manifold"], trajectory_to_show(views), folds)

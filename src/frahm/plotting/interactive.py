@@ -1,0 +1,166 @@
+"""Interactive figures for the browser, of the same data as those on paper. Nothing is fetched from anywhere."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from frahm.arrays import Floats
+from frahm.plotting.lines import KIND_NAMES, response_lines, special_marks, thinned
+from frahm.plotting.static import DETUNING_LABEL, QUANTITY_LABELS
+from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK
+from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+CONFIG = {
+    "displaylogo": False,
+    "showSendToCloud": False,
+    "responsive": True,
+    "modeBarButtonsToRemove": ["select2d", "lasso2d", "autoScale2d"],
+}
+_SYMBOLS = {
+    "saddle-node": "triangle-up",
+    "hopf": "square",
+    "neimark-sacker": "diamond",
+    "period-doubling": "triangle-down",
+    "branch-point": "cross",
+}
+_COLOURS = {"x1": PIPE, "z": SINK}
+_FILLS = {"x1": "rgba(0, 114, 178, 0.25)", "z": "rgba(213, 94, 0, 0.22)"}
+
+
+def response_plot(curve: xr.Dataset, quantity: str, motions: list[MotionView], bare: xr.Dataset | None) -> go.Figure:
+    """Response over the detuning; see `frahm.plotting.static.response_figure`."""
+    figure = go.Figure()
+    named: set[str] = set()
+    for line in response_lines(curve, quantity):
+        look = {"color": SINK if line.detached else PIPE, "dash": "solid" if line.stable else "dash", "width": 2}
+        x, y = _small(line.x), _small(line.y)
+        figure.add_scatter(
+            x=x, y=y, mode="lines", line=look, name=line.name, legendgroup=line.name, showlegend=line.name not in named,
+            hovertemplate="σ %{x:.4f} rad/s<br>%{y:.4g} m",
+        )  # fmt: skip
+        named.add(line.name)
+    if bare is not None and quantity == "pipe_peak":
+        x, y = _small(bare["detuning"].values), _small(bare["pipe_peak"].values)
+        dotted = {"color": BARE, "dash": "dot", "width": 1.5}
+        figure.add_scatter(x=x, y=y, mode="lines", line=dotted, name="without absorber")
+    top = max([float(np.nanmax(curve[quantity].values)), *_add_motions(figure, motions, quantity)])
+    _add_special_points(figure, curve, quantity)
+    figure.update_layout(**_layout(440))
+    figure.update_xaxes(title_text=DETUNING_LABEL)
+    figure.update_yaxes(title_text=QUANTITY_LABELS[quantity], title_standoff=8, range=[0, 1.12 * top or 1.0])
+    return figure
+
+
+def motion_plot(motion: MotionView) -> go.Figure:
+    """Envelope of the whole run, last periods, spectrum of the tail."""
+    figure = make_subplots(rows=3, cols=1, vertical_spacing=0.13)
+    for name in reversed(motion.signals):
+        look: dict[str, Any] = {"color": _COLOURS[name], "width": 1}
+        common: dict[str, Any] = {"legendgroup": name, "name": LABELS[name], "mode": "lines"}
+        time, low, high = (_small(values) for values in motion.envelope[name])
+        figure.add_scatter(x=time, y=low, line=look, showlegend=False, row=1, col=1, **common)
+        figure.add_scatter(x=time, y=high, line=look, fill="tonexty", fillcolor=_FILLS[name], row=1, col=1, **common)
+        for row, (x, y) in ((2, motion.last[name]), (3, thinned(*motion.spectrum[name]))):
+            dashed = look | {"dash": "solid" if name == "x1" or row == 3 else "dash"}
+            figure.add_scatter(x=_small(x), y=_small(y), line=dashed, showlegend=False, row=row, col=1, **common)
+    decades = [float(np.log10(value)) for value in motion.spectrum_range]
+    figure.update_layout(**_layout(760))
+    figure.update_xaxes(title_text="time [s], whole run", row=1, col=1)
+    figure.update_xaxes(title_text="time [s], last periods", row=2, col=1)
+    figure.update_xaxes(title_text="frequency [Hz]", range=[0, SHOWN_HARMONICS * motion.frequency_hz], row=3, col=1)
+    figure.update_yaxes(title_text="envelope [m]", row=1, col=1)
+    figure.update_yaxes(title_text="displacement [m]", row=2, col=1)
+    figure.update_yaxes(
+        title_text="amplitude [m]", type="log", range=decades, exponentformat="power", dtick=1, row=3, col=1
+    )
+    return figure
+
+
+def manifold_plot(manifold: xr.Dataset, motion: MotionView | None, folds: dict[str, Any] | None) -> go.Figure:
+    """Slow manifold with folds, jumps and the trajectory of a motion."""
+    figure = go.Figure()
+    if motion is not None and motion.slow is not None:
+        Z, X = motion.slow
+        figure.add_scatter(
+            x=_small(Z), y=_small(X), mode="lines", line={"color": GREEN, "width": 1},
+            name=f"motion at σ = {motion.detuning:.3g} rad/s",
+        )  # fmt: skip
+    Z, X = manifold["relative_amplitude"].values, manifold["pipe_amplitude"].values
+    attracting = manifold["attracting"].values > 0
+    for holds, name, dash in ((attracting, "attracting", "solid"), (~attracting, "repelling", "dash")):
+        if np.any(holds):
+            y = _small(np.where(holds, X, np.nan))
+            look = {"color": INK, "dash": dash, "width": 2}
+            figure.add_scatter(x=_small(Z), y=y, mode="lines", line=look, name=f"slow manifold, {name}")
+    if folds:
+        _add_folds(figure, folds)
+    figure.update_layout(**_layout(460))
+    figure.update_xaxes(title_text="amplitude of the absorber |Z| [m]", rangemode="tozero")
+    figure.update_yaxes(title_text="amplitude of the pipe |X| [m]", range=[0, manifold_height(manifold, motion, folds)])
+    return figure
+
+
+def _add_folds(figure: go.Figure, folds: dict[str, Any]) -> None:
+    mark = {"color": INK, "size": 10, "symbol": "triangle-up"}
+    figure.add_scatter(x=folds["relative"], y=folds["pipe"], mode="markers", marker=mark, name="fold")
+    for i, (start, end, height) in enumerate(zip(folds["relative"], folds["landing"], folds["pipe"], strict=True)):
+        figure.add_scatter(
+            x=[start, end], y=[height, height], mode="lines+markers", name="jump", legendgroup="jump",
+            showlegend=i == 0, line={"color": SINK, "dash": "dot"},
+            marker={"symbol": "arrow", "size": [0, 12], "angle": 90 if end > start else -90, "color": SINK},
+        )  # fmt: skip
+
+
+def _add_motions(figure: go.Figure, motions: list[MotionView], quantity: str) -> list[float]:
+    """Mark the integrated motions, a modulated one with the range of its peaks; return the heights."""
+    heights: list[float] = []
+    for kind, symbol in (("periodic", "circle-open"), ("modulated", "diamond"), ("unsettled", "x")):
+        chosen = [m for m in motions if m.kind == kind and np.isfinite(m.peaks(quantity)[1])]
+        if not chosen:
+            continue
+        ranges = [m.peaks(quantity) for m in chosen]
+        high = [top for _, top in ranges]
+        figure.add_scatter(
+            x=[m.detuning for m in chosen], y=high, mode="markers", name=f"integrated from rest, {kind}",
+            marker={"symbol": symbol, "size": 9, "color": GREEN},
+            error_y={
+                "type": "data", "symmetric": False, "array": [0.0] * len(chosen), "color": GREEN, "thickness": 1,
+                "width": 0, "arrayminus": [top - low for low, top in ranges], "visible": kind != "periodic",
+            },
+        )  # fmt: skip
+        heights += high
+    return heights
+
+
+def _add_special_points(figure: go.Figure, curve: xr.Dataset, quantity: str) -> None:
+    marks = special_marks(curve, quantity)
+    for kind in dict.fromkeys(mark.kind for mark in marks):
+        chosen = [mark for mark in marks if mark.kind == kind]
+        figure.add_scatter(
+            x=[m.x for m in chosen], y=[m.y for m in chosen], text=[m.label for m in chosen], mode="markers+text",
+            textposition="bottom center" if kind == "saddle-node" else "top center", name=KIND_NAMES[kind],
+            marker={"symbol": _SYMBOLS[kind], "size": 9, "color": INK},
+        )  # fmt: skip
+
+
+def _layout(height: int) -> dict[str, Any]:
+    return {
+        "template": "simple_white",
+        "height": height,
+        "margin": {"l": 60, "r": 16, "t": 36, "b": 50},
+        "legend": {"orientation": "h", "yanchor": "top", "y": -150 / height, "x": 0},
+        "font": {"family": "system-ui, sans-serif", "size": 13, "color": INK},
+        "hoverlabel": {"namelength": -1},
+    }
+
+
+def _small(values: Floats) -> np.ndarray:
+    """Single precision is more than a screen can show, and half the file."""
+    return np.asarray(values, dtype=np.float32)

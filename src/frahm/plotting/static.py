@@ -1,0 +1,132 @@
+"""Figures on paper: response, motion, spectrum and slow manifold, drawn from the datasets of an analysis."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from frahm.plotting.lines import KIND_NAMES, response_lines, special_marks, thinned
+from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK, UNSTABLE_DASHES, new_figure
+from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DETUNING_LABEL = "detuning σ = Ω - ω [rad/s]"
+QUANTITY_LABELS = {"pipe_peak": "pipe displacement x₁ [m]", "relative_peak": "relative displacement z [m]"}
+_SIGNAL_LOOKS: dict[str, tuple[str, Any, float]] = {"x1": (PIPE, "-", 1.4), "z": (SINK, (0, (3.0, 1.2)), 1.1)}
+MARKERS = {"saddle-node": "^", "hopf": "s", "neimark-sacker": "D", "period-doubling": "v", "branch-point": "P"}
+
+
+def response_figure(
+    curve: xr.Dataset, quantity: str, motions: list[MotionView] | None = None, bare: xr.Dataset | None = None
+) -> Figure:
+    """Response over the detuning: stable solid, unstable dashed, special points, motions that were integrated.
+
+    Parameters
+    ----------
+    curve : Dataset
+        From `frahm.ResponseCurve.to_dataset`.
+    quantity : str
+        "pipe_peak" or "relative_peak".
+    motions : list of MotionView, optional
+        Integrated motions, marked at their peak; a modulated one with the range of its peaks.
+    bare : Dataset, optional
+        Response without absorbers, drawn dotted; the axis is scaled for the rest.
+    """
+    figure = new_figure()
+    axes = figure.subplots()
+    _draw_branches(axes, curve, quantity)
+    for mark in special_marks(curve, quantity):
+        label = "_" if mark.label[-1] != "1" else KIND_NAMES[mark.kind]
+        axes.plot(mark.x, mark.y, MARKERS[mark.kind], color=INK, markersize=5, linestyle="none", label=label)
+        below = mark.kind == "saddle-node"
+        axes.annotate(
+            mark.label, (mark.x, mark.y), (0, -7 if below else 6), textcoords="offset points", ha="center",
+            va="top" if below else "bottom", fontsize=8,
+        )  # fmt: skip
+    top = float(np.nanmax(curve[quantity].values))
+    for motion in motions or []:
+        top = max(top, _draw_motion(axes, motion, quantity))
+    if bare is not None and quantity == "pipe_peak":
+        axes.plot(bare["detuning"].values, bare["pipe_peak"].values, ":", color=BARE, label="without absorber")
+    axes.set(xlabel=DETUNING_LABEL, ylabel=QUANTITY_LABELS[quantity], ylim=(0, 1.18 * top or 1.0))
+    axes.legend(loc="best")
+    return figure
+
+
+def motion_figure(motion: MotionView) -> Figure:
+    """Pipe and absorber in time and frequency: envelope of the whole run, last periods, spectrum of the tail."""
+    figure = new_figure(160, 150)
+    whole, last, lines = figure.subplots(3, 1)
+    for name in reversed(motion.signals):
+        color, style, width = _SIGNAL_LOOKS[name]
+        time, low, high = motion.envelope[name]
+        whole.fill_between(time, low, high, facecolor=color, alpha=0.25, linewidth=0, label=LABELS[name])
+        for edge in (low, high):
+            whole.plot(time, edge, color=color, linewidth=0.5)
+        last.plot(*motion.last[name], color=color, linestyle=style, linewidth=width)
+        lines.semilogy(*thinned(*motion.spectrum[name], 700), color=color, linestyle=style, linewidth=0.7)
+    lines.axvline(motion.frequency_hz, color=INK, linestyle=":", linewidth=0.8, label="excitation")
+    whole.set(title=motion.title, xlabel="time [s], whole run", ylabel="envelope [m]")
+    last.set(xlabel="time [s], last periods", ylabel="displacement [m]")
+    lines.set(xlabel="frequency [Hz]", ylabel="amplitude [m]", ylim=motion.spectrum_range)
+    lines.set_xlim(0, SHOWN_HARMONICS * motion.frequency_hz)
+    for axes in (whole, last):
+        axes.margins(x=0.01)
+    handles = [*whole.get_legend_handles_labels()[0], *lines.get_legend_handles_labels()[0]]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    return figure
+
+
+def manifold_figure(manifold: xr.Dataset, motion: MotionView | None = None, folds: dict | None = None) -> Figure:
+    """Slow invariant manifold with its folds, and the trajectory of a motion on it."""
+    figure = new_figure(160, 100)
+    axes = figure.subplots()
+    if motion is not None and motion.slow is not None:
+        axes.plot(*motion.slow, color=GREEN, linewidth=0.7, label=f"motion at σ = {motion.detuning:.3g} rad/s")
+    Z, X = manifold["relative_amplitude"].values, manifold["pipe_amplitude"].values
+    attracting = manifold["attracting"].values > 0
+    axes.plot(Z, np.where(attracting, X, np.nan), color=INK, label="slow manifold, attracting")
+    if not attracting.all():
+        axes.plot(
+            Z, np.where(attracting, np.nan, X), linestyle=UNSTABLE_DASHES, color=INK, label="slow manifold, repelling"
+        )
+    if folds:
+        axes.plot(folds["relative"], folds["pipe"], "^", color=INK, markersize=6, label="fold")
+        for start, end, height in zip(folds["relative"], folds["landing"], folds["pipe"], strict=True):
+            axes.annotate("", (end, height), (start, height), arrowprops={"arrowstyle": "->", "color": SINK})
+        axes.axhline(folds["pipe_ceiling"], color=SINK, linestyle=":", linewidth=1.0, label="ceiling of the pipe")
+    axes.set(xlabel="amplitude of the absorber relative to the pipe |Z| [m]", ylabel="amplitude of the pipe |X| [m]")
+    axes.set(xlim=(0, None), ylim=(0, manifold_height(manifold, motion, folds)))
+    axes.legend(loc="upper left")
+    return figure
+
+
+def _draw_branches(axes: Axes, curve: xr.Dataset, quantity: str) -> None:
+    named: set[str] = set()
+    for line in response_lines(curve, quantity):
+        axes.plot(
+            line.x, line.y, linestyle="-" if line.stable else UNSTABLE_DASHES, color=SINK if line.detached else PIPE,
+            label="_" if line.name in named else line.name,
+        )  # fmt: skip
+        named.add(line.name)
+
+
+def _draw_motion(axes: Axes, motion: MotionView, quantity: str) -> float:
+    """Mark a motion; return the height of the mark."""
+    low, high = motion.peaks(quantity)
+    if not np.isfinite(high):
+        return 0.0
+    known = axes.get_legend_handles_labels()[1]
+    label = f"integrated from rest, {motion.kind}"
+    shown = "_" if label in known else label
+    if motion.kind == "periodic":
+        axes.plot(motion.detuning, high, "o", markersize=5, markerfacecolor="none", color=GREEN, label=shown)
+    else:
+        axes.plot([motion.detuning] * 2, [low, high], "-", color=GREEN, linewidth=1.0)
+        axes.plot(motion.detuning, high, "D", markersize=4, color=GREEN, label=shown)
+    return high

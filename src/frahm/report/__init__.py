@@ -1,0 +1,5 @@
+"""Room `report`: one offline HTML file that says what was found, and how far it can be trusted."""
+
+from frahm.report.report import REPORT_FILE, render_report, write_report
+
+__all__ = ["REPORT_FILE", "render_report", "write_report"]

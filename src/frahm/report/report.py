@@ -1,0 +1,139 @@
+"""The report: one HTML file that needs no network, rendered from an analysis."""
+
+from __future__ import annotations
+
+import base64
+import re
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import plotly.graph_objects as go
+import plotly.offline
+from markupsafe import Markup
+
+from frahm.analysis import Analysis
+from frahm.errors import ParameterError
+from frahm.files import write_text
+from frahm.plotting.gallery import save_figures
+from frahm.plotting.interactive import CONFIG, manifold_plot, motion_plot, response_plot
+from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
+from frahm.report import tables
+
+REPORT_FILE = "report.html"
+_MOST_MOTIONS = 8
+_LONG_COORDINATE = re.compile(r"(\.\d)\d+")
+_PATH = re.compile(r' d="[^"]*"')
+
+
+def write_report(analysis: Analysis, folder: str | Path) -> Path:
+    """Draw the figures into `folder`/figures and render the report beside them; return the path of the report.
+
+    Raises
+    ------
+    ParameterError
+        If a file cannot be written.
+    """
+    figures, path = Path(folder) / "figures", Path(folder) / REPORT_FILE
+    try:
+        figures.mkdir(exist_ok=True)
+    except OSError as error:
+        raise ParameterError("DIR", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
+    drawn = save_figures(analysis.results, analysis.data, figures)
+    images = {file.stem: file.read_text(encoding="utf-8") for file in drawn if file.suffix == ".svg"}
+    write_text(path, render_report(analysis, images))
+    return path
+
+
+def render_report(analysis: Analysis, images: dict[str, str]) -> str:
+    """Return the report as HTML text with everything it needs inside.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        What is reported.
+    images : dict of str
+        Figures by name as SVG text: for paper, and for readers without JavaScript.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("frahm.report", "."),
+        autoescape=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        undefined=jinja2.StrictUndefined,
+    )
+    environment.filters["number"] = tables.number
+    views = motion_views(analysis.results, analysis.data)
+    status, sentence = headline(analysis)
+    plots = _plots(analysis, views)
+    return environment.get_template("report.html.jinja").render(
+        analysis=analysis,
+        status=status,
+        headline=sentence,
+        cards=cards(analysis.results),
+        results=analysis.results,
+        tables=tables,
+        views=views[:_MOST_MOTIONS],
+        more_motions=max(0, len(views) - _MOST_MOTIONS),
+        plots=plots,
+        images={name: _address(svg) for name, svg in images.items() if name in plots},
+        plotly_js=Markup(plotly.offline.get_plotlyjs()),
+        plotly_config=CONFIG,
+    )
+
+
+def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
+    """Interactive figures as JSON, by the same names as the figures on paper."""
+    data, results = analysis.data, analysis.results
+    figures: dict[str, go.Figure] = {}
+    for name, quantity in (("response-pipe", "pipe_peak"), ("response-absorber", "relative_peak")):
+        if "response" in data and quantity in data["response"]:
+            figures[name] = response_plot(data["response"], quantity, views, data.get("without_absorber"))
+    for view in views[:_MOST_MOTIONS]:
+        figures[f"motion-{view.key}"] = motion_plot(view)
+    if "slow_manifold" in data:
+        folds = results["slow_manifold"]["folds"]
+        figures["slow-manifold"] = manifold_plot(data["slow_manifold"], trajectory_to_show(views), folds)
+    return {name: Markup(_inside_script(figure)) for name, figure in figures.items()}
+
+
+def _inside_script(figure: go.Figure) -> str:
+    """JSON of a figure that cannot end the script element it stands in."""
+    return str(figure.to_json()).replace("<", "\\u003c")
+
+
+def _address(svg: str) -> str:
+    """The drawing as data address, coordinates to a tenth of a point: no reader sees more, and it is half as long."""
+    short = _PATH.sub(lambda path: _LONG_COORDINATE.sub(r"\1", path[0]), svg)
+    return "data:image/svg+xml;base64," + base64.b64encode(short.encode()).decode()
+
+
+def headline(analysis: Analysis) -> tuple[str, str]:
+    """Status and a sentence on how far the results can be trusted."""
+    failed = sum(check.status == "fail" for check in analysis.checks)
+    doubts = len(analysis.unverified) + sum(check.status == "unverified" for check in analysis.checks)
+    if failed:
+        return "fail", f"✗ {failed} of {len(analysis.checks)} checks failed"
+    if doubts:
+        return "unverified", f"? {doubts} unverified"
+    return "pass", f"✓ all {len(analysis.checks)} checks passed"
+
+
+def cards(results: dict[str, Any]) -> list[tuple[str, str, str]]:
+    """The few numbers a reader looks for first: name, value, remark."""
+    shown = []
+    largest = results.get("largest_motion")
+    if largest:
+        shown.append(("Largest pipe motion found", f"{largest['pipe_peak']:#.3g} m",
+                      f"{largest['kind']}, at σ = {largest['detuning']:.3g} rad/s"))  # fmt: skip
+        if results["has_absorber"] and largest["ratio_to_no_absorber"] is not None:
+            bare = results["without_absorber"]["pipe_peak_max"]
+            shown.append(("Share of the motion without absorber", f"{largest['ratio_to_no_absorber']:.1%}",
+                          f"of {bare:#.3g} m at resonance"))  # fmt: skip
+        if largest["stroke"] is not None:
+            shown.append(("Largest stroke of the absorber", f"{largest['stroke']:#.3g} m", "relative to the pipe"))
+    if results.get("motions") and results["motions"][0]["pipe_peak"] is not None:
+        motion = results["motions"][0]
+        shown.append(("At the design wind", f"{motion['pipe_peak']:#.3g} m",
+                      f"{motion['kind']}, from rest, σ = {motion['detuning']:.3g} rad/s"))  # fmt: skip
+    return shown

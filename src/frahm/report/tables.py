@@ -1,0 +1,172 @@
+"""Rows of the tables in a report, as text ready to be read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from pydantic import BaseModel
+
+from frahm.analysis import Analysis
+from frahm.case import Case, field_table
+from frahm.loads import vortex_shedding
+
+_MARKS = {"pass": "✓ pass", "fail": "✗ fail", "unverified": "? unverified"}
+
+
+_GREEK = {"omega": "ω", "zeta": "ζ", "rho": "ρ", "sigma": "σ"}
+
+
+class InputRow(NamedTuple):
+    """One field of the case; the symbol is its letter and its index."""
+
+    path: str
+    title: str
+    symbol: tuple[str, str]
+    value: str
+    unit: str
+    defaulted: bool
+
+
+def number(value: Any, digits: int = 4) -> str:
+    """A number for people; what is not known is a dash."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return "-"
+    return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
+
+
+def input_rows(case: Case, defaulted: list[str]) -> list[InputRow]:
+    """Every field of the case in SI units, those left out in the file marked."""
+    return [
+        InputRow(path, facts.title, _symbol(facts.symbol), _value(value), _unit(facts.unit), path in defaulted)
+        for path, facts, value in _fields(case)
+    ]
+
+
+def derived_rows(case: Case) -> list[tuple[str, str, str]]:
+    """What follows from the inputs: name, value, unit."""
+    shedding, pipe = vortex_shedding(case), case.pipe
+    rows = [
+        ("Natural frequency of the pipe", number(pipe.frequency / (2 * math.pi)), "Hz"),
+        ("Vortex shedding frequency", number(shedding.frequency_hz), "Hz"),
+        ("Detuning of the wind", number(shedding.detuning), "rad/s"),
+        ("Amplitude of the lift", number(shedding.lift), "N"),
+        ("Reduced velocity", number(shedding.reduced_velocity), ""),
+        ("Reynolds number", number(shedding.reynolds_number, 3), ""),
+    ]
+    units = {"rho2": ("mass over mass of the pipe", ""), "xi2": ("damping over mass of the pipe", "1/s"),
+             "kappa": ("cubic stiffness over mass of the pipe", "1/(m² s²)")}  # fmt: skip
+    for absorber in case.absorbers:
+        for name, value in absorber.normalised(pipe.mass).items():
+            text, unit = units[name]
+            rows.append((f"{absorber.name}: {text}", number(value, 5), unit))
+    return rows
+
+
+def special_point_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Label, kind, detuning, frequency in Hz, pipe peak, stroke, branch, status of every special point."""
+    from frahm.plotting.lines import special_marks
+
+    if "response" not in analysis.data:
+        return []
+    found = analysis.results["response"][analysis.data["response"].attrs["method"]]
+    detached = {b["number"] for b in found.get("branches", []) if b["detached"]}
+    return [
+        (
+            mark.label, point["kind"], number(point["detuning"]), number(point["frequency"] / (2 * math.pi), 5),
+            number(point["pipe_peak"]), number(point["relative_peak"]),
+            f"{point['branch']}{' (detached)' if point['branch'] in detached else ''}", point["status"],
+        )
+        for mark, point in zip(
+            special_marks(analysis.data["response"], "pipe_peak"), found["special_points"], strict=True
+        )
+    ]  # fmt: skip
+
+
+def motion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Detuning, reason, kind, largest and smallest peak, rms, stroke, peak without absorber, ratio of every motion."""
+    rows: list[tuple[str, ...]] = []
+    for motion in analysis.results.get("motions", []):
+        peak, bare = motion["pipe_peak"], motion["pipe_peak_without_absorber"]
+        ratio = peak / bare if peak is not None and bare else None
+        rows.append(
+            (
+                number(motion["detuning"]), motion["reason"], motion["kind"], number(peak),
+                number(motion["pipe_envelope"][0]), number(motion["pipe_rms"]), number(motion["relative_peak"]),
+                number(bare), f"{ratio:.3g}" if ratio is not None else "-",
+            )
+        )  # fmt: skip
+    return rows
+
+
+def comparison_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Slow flow against the exact equations, response by response, in order of the detuning."""
+    if "cross_check" not in analysis.data:
+        return []
+    table = analysis.data["cross_check"].sortby("detuning")
+    names = ("detuning", "slow_pipe_peak", "pipe_peak", "slow_relative_peak", "relative_peak")
+    columns = [[number(float(value)) for value in table[name].values] for name in names]
+    errors = [[f"{value:+.2%}" for value in table[name].values] for name in ("pipe_error", "relative_error")]
+    stays = ["yes" if value else "no" for value in table["steady"].values]
+    sigma, slow_pipe, pipe, slow_stroke, stroke = columns
+    return list(zip(sigma, slow_pipe, pipe, errors[0], slow_stroke, stroke, errors[1], stays, strict=True))
+
+
+def check_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
+    """Name, status, its sign in words, detail of every check."""
+    return [(check.name, check.status, _MARKS[check.status], check.detail) for check in analysis.checks]
+
+
+def manifold_rows(analysis: Analysis) -> list[tuple[str, str, str]]:
+    """Folds and ceilings of the slow manifold: name, value, unit."""
+    manifold = analysis.results.get("slow_manifold")
+    if manifold is None:
+        return []
+    rows = [("λ = ξ₂/(ρ₂ ω); folds exist below 0.577", number(float(manifold["lambda"])), "")]
+    folds = manifold["folds"]
+    if folds is None:
+        return rows
+    rows += [
+        ("Upper fold: pipe |X|, the ceiling of the modulated response", number(float(folds["pipe"][0])), "m"),
+        ("Upper fold: absorber |Z|", number(float(folds["relative"][0])), "m"),
+        ("Absorber |Z| after the jump, the ceiling of the stroke", number(float(folds["landing"][0])), "m"),
+        ("Lower fold: pipe |X|", number(float(folds["pipe"][1])), "m"),
+        ("Lower fold: absorber |Z|", number(float(folds["relative"][1])), "m"),
+    ]
+    modulated = [m for m in analysis.results.get("motions", []) if m["kind"] == "modulated"]
+    if modulated:
+        largest = max(m["pipe_peak"] for m in modulated)
+        rows.append(
+            ("Largest modulated pipe peak integrated, over the ceiling", f"{largest / folds['pipe'][0]:.3f}", "")
+        )
+    return rows
+
+
+def _fields(case: Case) -> Iterator[tuple[str, Any, Any]]:
+    sections: list[tuple[str, str, BaseModel]] = [("pipe", "pipe", case.pipe), ("wind", "wind", case.wind)]
+    for i, absorber in enumerate(case.absorbers):
+        sections.append((f"absorbers[{i}]", "absorbers[]", absorber))
+        sections.append((f"absorbers[{i}].law", f"absorbers[].law({absorber.law.kind})", absorber.law))
+    sections.append(("analysis", "analysis", case.analysis))
+    table = field_table(Case)
+    for path, key, section in sections:
+        for name in type(section).model_fields:
+            value = getattr(section, name)
+            if not isinstance(value, BaseModel):
+                yield f"{path}.{name}", table[f"{key}.{name}"], value
+
+
+def _symbol(symbol: str) -> tuple[str, str]:
+    letter, _, index = symbol.partition("_")
+    return _GREEK.get(letter, letter), index
+
+
+def _unit(unit: str) -> str:
+    return unit.replace("^2", "²").replace("^3", "³")
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, tuple):
+        return " … ".join(number(float(entry), 6) for entry in value) if len(value) == 2 else str(list(value))
+    return number(value, 6)
