@@ -103,7 +103,6 @@ def _table(starts: list[Start], batch: BatchResult, omega: float) -> xr.Dataset:
 
     frequency = np.array([start.frequency for start in starts])
     pipe, relative = np.array([abs(s.X) for s in starts]), np.array([abs(s.Z) for s in starts])
-    swing = (batch.pipe_peak - batch.pipe_least_peak) / batch.pipe_peak
     return xr.Dataset(
         {
             "frequency": column(frequency, "excitation frequency Omega", "rad/s"),
@@ -113,11 +112,19 @@ def _table(starts: list[Start], batch: BatchResult, omega: float) -> xr.Dataset:
             "slow_relative_peak": column(relative, "relative peak by the slow flow", "m"),
             "pipe_peak": column(batch.pipe_peak, "pipe peak by integration", "m"),
             "relative_peak": column(batch.relative_peak, "relative peak by integration", "m"),
-            "pipe_error": column(pipe / batch.pipe_peak - 1, "relative error of the slow pipe peak", "1"),
-            "relative_error": column(relative / batch.relative_peak - 1, "relative error of the slow stroke", "1"),
-            "steady": column(swing < _STEADY, "integrated motion repeats every period", "1"),
+            "pipe_error": column(_error(pipe, batch.pipe_peak), "relative error of the slow pipe peak", "1"),
+            "relative_error": column(_error(relative, batch.relative_peak), "relative error of the slow stroke", "1"),
+            "steady": column(
+                batch.pipe_least_peak >= (1 - _STEADY) * batch.pipe_peak, "integrated motion repeats every period", "1"
+            ),
         }
     )
+
+
+def _error(approximate: Floats, exact: Floats) -> Floats:
+    """Relative error; 0 where both are 0."""
+    same = approximate == exact
+    return np.where(same, 0.0, approximate / np.where(same, 1.0, exact) - 1)
 
 
 def _judged(table: xr.Dataset) -> Check:

@@ -77,10 +77,10 @@ def linear_response(work: Work) -> Section:
     lo, hi = case.analysis.detuning
     detuning = np.linspace(lo, hi, _POINTS)
     X = linear_amplitudes(system, system.reference_frequency + detuning)
-    pipe = np.abs(X @ system.output)
+    pipe = _magnitude(X, system.output)
     curve = _curve(detuning, system.reference_frequency, pipe)
     if system.elements:
-        relative = np.abs(X @ system.elements[0].direction)
+        relative = _magnitude(X, system.elements[0].direction)
         curve["relative_peak"] = labelled("point", relative, "largest relative displacement over a period", "m")
     growth = _growth_rate(system)
     stable = growth < 0
@@ -127,6 +127,12 @@ def _growth_rate(system: System) -> float:
     A = np.block([[zero, one], [-stiffness, -damping]])
     B = scipy.linalg.block_diag(one, system.mass)
     return float(np.max(scipy.linalg.eigvals(A, B).real))
+
+
+def _magnitude(X: Complexes, row: Floats) -> Floats:
+    """|row . X| [m]; infinite where an amplitude is."""
+    known = np.all(np.isfinite(X), axis=1)
+    return np.where(known, np.abs(np.where(known[:, None], X, 0) @ row), np.inf)
 
 
 def _solved(matrix: Complexes, forcing: Floats) -> Complexes:

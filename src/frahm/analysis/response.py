@@ -17,7 +17,7 @@ def response(work: Work) -> Section:
         return linear_response(work)
     if isinstance(work.slow_flow, str):
         why = f"The response over frequency was not computed. {work.slow_flow}"
-        return Section(unverified=(why,), notes=(why,))
+        return Section(unverified=(why,))
     analysis = work.case.analysis
     curve = frequency_response(
         work.system, detuning=analysis.detuning, method="slow-flow", form=analysis.form, points=_POINTS

@@ -19,7 +19,17 @@ def largest_motion(work: Work) -> Section:
     bare = work.done.results["without_absorber"]["pipe_peak_max"]
     ratio = largest["pipe_peak"] / bare if math.isfinite(bare) and bare > 0 else None
     stroke = max((c["relative_peak"] for c in candidates if c["relative_peak"] is not None), default=None)
-    return Section(results={"largest_motion": {**largest, "ratio_to_no_absorber": ratio, "stroke": stroke}})
+    return Section(
+        results={"largest_motion": {**largest, "ratio_to_no_absorber": ratio, "stroke": stroke}},
+        notes=_at_the_edge(work, largest["detuning"]),
+    )
+
+
+def _at_the_edge(work: Work, detuning: float) -> tuple[str, ...]:
+    lo, hi = work.case.analysis.detuning
+    if min(abs(detuning - lo), abs(detuning - hi)) > 1e-3 * (hi - lo):
+        return ()
+    return ("The largest motion lies at the edge of the window: beyond analysis.detuning it may be larger.",)
 
 
 def _from_motions(work: Work) -> list[dict[str, Any]]:
@@ -60,8 +70,10 @@ def _from_response(work: Work) -> list[dict[str, Any]]:
 def verdict(results: dict[str, Any], failed: int, unverified: int) -> str:
     """What the results come to, in two or three sentences."""
     sentences = [*_about_largest(results), *_about_design_wind(results)]
-    if failed or unverified:
-        sentences.append(f"{_count(failed, 'check')} failed and {_count(unverified, 'point')} could not be verified.")
+    if failed:
+        sentences.append(f"{_count(failed, 'check')} failed.")
+    if unverified:
+        sentences.append(f"{_count(unverified, 'statement')} could not be verified.")
     return " ".join(sentences) or "Nothing was finished."
 
 
@@ -70,15 +82,16 @@ def _about_largest(results: dict[str, Any]) -> list[str]:
     if largest is None:
         return []
     text = (
-        f"The largest lasting pipe motion found is {_length(largest['pipe_peak'])} "
+        f"The largest pipe motion found, transients aside, is {_length(largest['pipe_peak'])} "
         f"({largest['kind']}, at detuning {largest['detuning']:.3g} rad/s)"
     )
     if not results["has_absorber"]:
         return [text + "; there is no absorber."]
     ratio = largest["ratio_to_no_absorber"]
-    if ratio is None:
-        return [text + "; without an absorber the resonance is not bounded by damping."]
     bare = results["without_absorber"]["pipe_peak_max"]
+    if ratio is None:
+        why = "there is no lift" if bare == 0 else "without an absorber no damping bounds the resonance"
+        return [f"{text}; {why}."]
     return [text + f": {_share(ratio)} of the {_length(bare)} at resonance without an absorber."]
 
 
@@ -105,4 +118,4 @@ def _share(ratio: float) -> str:
 
 
 def _count(number: int, what: str) -> str:
-    return f"{number or 'no'} {what}{'' if number == 1 else 's'}"
+    return f"{number} {what}{'' if number == 1 else 's'}"

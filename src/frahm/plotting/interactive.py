@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from frahm.arrays import Floats
-from frahm.plotting.lines import KIND_NAMES, response_lines, special_marks, thinned
+from frahm.plotting.lines import KIND_NAMES, largest_finite, response_lines, special_marks, thinned
 from frahm.plotting.static import DETUNING_LABEL, QUANTITY_LABELS
 from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK
 from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
@@ -50,7 +50,7 @@ def response_plot(curve: xr.Dataset, quantity: str, motions: list[MotionView], b
         x, y = _small(bare["detuning"].values), _small(bare["pipe_peak"].values)
         dotted = {"color": BARE, "dash": "dot", "width": 1.5}
         figure.add_scatter(x=x, y=y, mode="lines", line=dotted, name="without absorber")
-    top = max([float(np.nanmax(curve[quantity].values)), *_add_motions(figure, motions, quantity)])
+    top = max([largest_finite(curve[quantity].values), *_add_motions(figure, motions, quantity)])
     _add_special_points(figure, curve, quantity)
     figure.update_layout(**_layout(440))
     figure.update_xaxes(title_text=DETUNING_LABEL)

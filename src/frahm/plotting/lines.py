@@ -94,6 +94,11 @@ def special_marks(curve: xr.Dataset, quantity: str) -> list[Mark]:
     return marks
 
 
+def largest_finite(values: Floats) -> float:
+    """Largest finite value, 0 if there is none."""
+    return float(np.max(values[np.isfinite(values)], initial=0.0))
+
+
 def thinned(x: Floats, y: Floats, most: int = 1000) -> tuple[Floats, Floats]:
     """Lowest and highest value of `y` in equal stretches, at most `most` points in all: extremes are never lost."""
     finite = np.isfinite(y)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frahm.plotting.lines import KIND_NAMES, response_lines, special_marks, thinned
+from frahm.plotting.lines import KIND_NAMES, largest_finite, response_lines, special_marks, thinned
 from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK, UNSTABLE_DASHES, new_figure
 from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
 
@@ -48,7 +48,7 @@ def response_figure(
             mark.label, (mark.x, mark.y), (0, -7 if below else 6), textcoords="offset points", ha="center",
             va="top" if below else "bottom", fontsize=8,
         )  # fmt: skip
-    top = float(np.nanmax(curve[quantity].values))
+    top = largest_finite(curve[quantity].values)
     for motion in motions or []:
         top = max(top, _draw_motion(axes, motion, quantity))
     if bare is not None and quantity == "pipe_peak":
@@ -69,7 +69,9 @@ def motion_figure(motion: MotionView) -> Figure:
         for edge in (low, high):
             whole.plot(time, edge, color=color, linewidth=0.5)
         last.plot(*motion.last[name], color=color, linestyle=style, linewidth=width)
-        lines.semilogy(*thinned(*motion.spectrum[name], 700), color=color, linestyle=style, linewidth=0.7)
+        lines.plot(*thinned(*motion.spectrum[name], 700), color=color, linestyle=style, linewidth=0.7)
+    if motion.moves:
+        lines.set_yscale("log")
     lines.axvline(motion.frequency_hz, color=INK, linestyle=":", linewidth=0.8, label="excitation")
     whole.set(title=motion.title, xlabel="time [s], whole run", ylabel="envelope [m]")
     last.set(xlabel="time [s], last periods", ylabel="displacement [m]")

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 LABELS = {"x1": "pipe x₁", "z": "absorber relative to the pipe z"}
 _LAST_PERIODS = 40
 _SLOW_PERIODS = 250
+_MOST_ENVELOPE = 1000
 _SPECTRAL_AMPLITUDES = {"x1": "pipe_amplitude", "z": "relative_amplitude"}
 _DECADES = 5
 SHOWN_HARMONICS = 4.0  # of the excitation, in spectra
@@ -75,6 +76,11 @@ class MotionView:
         return float(self.facts["frequency"]) / (2 * np.pi)
 
     @property
+    def moves(self) -> bool:
+        """Whether anything moves at all: a spectrum without a positive amplitude has no logarithm."""
+        return any(bool(np.any(amplitude > 0)) for _, amplitude in self.spectrum.values())
+
+    @property
     def spectrum_range(self) -> tuple[float, float]:
         """Amplitudes [m] worth showing."""
         top = max((float(np.max(a, initial=0.0)) for _, a in self.spectrum.values()), default=0.0) or 1.0
@@ -122,7 +128,9 @@ def _view(facts: dict[str, Any], motion: xr.Dataset, spectrum: xr.Dataset) -> Mo
     return MotionView(
         facts=facts,
         envelope={
-            name: (envelope_time[known], motion[f"{name}_low"].values[known], motion[f"{name}_high"].values[known])
+            name: _envelope(
+                *(motion[column].values[known] for column in ("envelope_time", f"{name}_low", f"{name}_high"))
+            )
             for name in signals
         },
         last={name: (time[window], motion[name].values[window]) for name in signals},
@@ -132,6 +140,15 @@ def _view(facts: dict[str, Any], motion: xr.Dataset, spectrum: xr.Dataset) -> Mo
         },
         slow=_slow(motion) if "z" in signals else None,
     )
+
+
+def _envelope(time: Floats, low: Floats, high: Floats) -> tuple[Floats, Floats, Floats]:
+    """The envelope; of a long run over several periods at a time."""
+    group = -(-time.size // _MOST_ENVELOPE)
+    if group <= 1:
+        return time, low, high
+    starts = np.arange(0, time.size, group)
+    return time[starts], np.minimum.reduceat(low, starts), np.maximum.reduceat(high, starts)
 
 
 def _slow(motion: xr.Dataset) -> tuple[Floats, Floats]:

@@ -116,7 +116,7 @@ def headline(analysis: Analysis) -> tuple[str, str]:
         return "fail", f"✗ {failed} of {len(analysis.checks)} checks failed"
     if doubts:
         return "unverified", f"? {doubts} unverified"
-    return "pass", f"✓ all {len(analysis.checks)} checks passed"
+    return "pass", f"✓ all checks passed ({len(analysis.checks)})"
 
 
 def cards(results: dict[str, Any]) -> list[tuple[str, str, str]]:
