@@ -81,7 +81,7 @@ def motions(work: Work) -> Section:
 def _motion(work: Work, point: PointOfInterest) -> Motion:
     history, start = _followed(work.system, point.detuning, work.case.analysis.periods)
     tail = history.last(max(1, math.floor(_TAIL * history.periods)))
-    kind, spread = judge(tail)
+    kind, spread = judge(history)
     bare = float(bare_amplitude(work.case, history.frequency)[0])
     return Motion(point, history, tail, start, kind, spread, bare)
 

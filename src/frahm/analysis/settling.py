@@ -12,7 +12,7 @@ from frahm.time_integration import TimeHistory
 KINDS = ("periodic", "modulated", "unsettled")
 PERIODIC_BELOW = 1e-3
 STEADY_WITHIN = 0.3
-_SHORTEST_TAIL = 20
+_SHORTEST = 80
 
 
 def section_spread(history: TimeHistory) -> float:
@@ -33,22 +33,22 @@ def section_spread(history: TimeHistory) -> float:
     return spread
 
 
-def judge(tail: TimeHistory) -> tuple[str, float]:
-    """Kind of the motion and the spread of its Poincare section over the second half of the tail.
+def judge(history: TimeHistory) -> tuple[str, float]:
+    """Kind of the motion, and the spread of its Poincare section over the last eighth of the history.
 
-    Periodic: the spread stays below 1e-3. Modulated: it is larger, and as large as over the first half (within 30 %).
-    Anything else, or a tail of less than 20 periods, is unsettled.
+    Periodic: that spread is below 1e-3. Modulated: it is larger, and over the last quarter as large as over the second
+    one (within 30 %), between which a transient decays. Anything else, or less than 80 periods, is unsettled.
     """
-    spacing = tail.samples_per_period
-    half = (tail.time.size - 1) // spacing // 2
-    late = section_spread(tail.last(half)) if half else 0.0
-    if not tail.outcome.ok or 2 * half < _SHORTEST_TAIL:
-        return "unsettled", late
-    if late < PERIODIC_BELOW:
-        return "periodic", late
-    early = section_spread(_first(tail, half * spacing + 1))
+    periods = (history.time.size - 1) // history.samples_per_period
+    last = section_spread(_part(history, 7 * periods // 8, periods))
+    if not history.outcome.ok or periods < _SHORTEST:
+        return "unsettled", last
+    if last < PERIODIC_BELOW:
+        return "periodic", last
+    early = section_spread(_part(history, periods // 4, periods // 2))
+    late = section_spread(_part(history, 3 * periods // 4, periods))
     steady = abs(late - early) <= STEADY_WITHIN * max(late, early)
-    return ("modulated" if steady else "unsettled"), late
+    return ("modulated" if steady else "unsettled"), last
 
 
 def envelope_of(values: Floats, per_period: int) -> tuple[Floats, Floats]:
@@ -58,8 +58,9 @@ def envelope_of(values: Floats, per_period: int) -> tuple[Floats, Floats]:
     return rows.min(axis=1), rows.max(axis=1)
 
 
-def _first(history: TimeHistory, samples: int) -> TimeHistory:
-    kept = slice(0, samples)
+def _part(history: TimeHistory, first: int, last: int) -> TimeHistory:
+    """From period `first` to period `last`."""
+    kept = slice(first * history.samples_per_period, last * history.samples_per_period + 1)
     return dataclasses.replace(
         history, time=history.time[kept], x=history.x[kept], v=history.v[kept], z=history.z[kept], w=history.w[kept]
     )
