@@ -1,4 +1,4 @@
-"""frahm designs nonlinear energy sinks against vortex-induced vibration of pipes, and proves that the design is safe."""
+"""Design of nonlinear energy sinks against vortex-induced vibration of pipes, with proof that the design is safe."""
 
 from __future__ import annotations
 
@@ -23,7 +23,9 @@ _PUBLIC = {
     "integrate": "frahm.time_integration",
     "TimeHistory": "frahm.time_integration",
     "frequency_response": "frahm.response",
+    "periodic_responses": "frahm.response",
     "ResponseCurve": "frahm.response",
+    "PeriodicResponse": "frahm.harmonic_balance",
     "slow_flow_map": "frahm.response",
     "stability_boundaries": "frahm.response",
 }

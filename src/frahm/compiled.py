@@ -29,12 +29,13 @@ _ROOT = Path(__file__).resolve().parent
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function on first use, without the interpreter lock, and keep the machine code on disk."""
-    given = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(_cache_root() / _digest(function.__module__)[:16])
+    config: Any = numba.config
+    given = config.CACHE_DIR
+    config.CACHE_DIR = str(_cache_root() / _digest(function.__module__)[:16])
     try:
         return numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=_FLAGS)(function)
     finally:
-        numba.config.CACHE_DIR = given
+        config.CACHE_DIR = given
 
 
 @functools.lru_cache(maxsize=1)

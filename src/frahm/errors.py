@@ -29,7 +29,7 @@ class ParameterError(ValueError):
     def __init__(self, name: str, value: Any, allowed: str, *, where: str | None = None, hint: str | None = None):
         self.name, self.value, self.allowed, self.where, self.hint = name, value, allowed, where, hint
         given = repr(value)
-        given = given if len(given) <= 80 else given[:77] + "..."
+        given = given if len(given) <= 240 else given[:237] + "..."
         message = f"{name}: given {given}; allowed: {allowed}"
         message = f"{where}: {message}" if where else message
         super().__init__(f"{message}. {hint}" if hint else message)

@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Floats
 from frahm.harmonic_balance.condensation import Problem, condense
 from frahm.harmonic_balance.floquet import Variation, variation_of
-from frahm.harmonic_balance.follow import CLOSED, LEFT, NO_START, follow
-from frahm.harmonic_balance.kernels import unknowns
-from frahm.harmonic_balance.newton import solve_at
+from frahm.harmonic_balance.follow import CLOSED, follow
+from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count, unknowns
+from frahm.harmonic_balance.newton import correct, solve_at
 from frahm.harmonic_balance.orbits import between, describe, locate, same_harmonics
 from frahm.harmonic_balance.seeds import (
     Seed,
@@ -60,7 +61,14 @@ class Track:
     closed: bool
     endings: tuple[int, ...]
     events: list[LocatedEvent] = field(default_factory=list)
-    parent: int | None = None
+    event_points: list[tuple[Floats, Floats, int] | None] = field(default_factory=list)
+    parent: Track | None = None
+
+    @property
+    def pieces(self) -> np.ndarray:
+        """Number of the piece inside the window every point belongs to."""
+        same = self.frequency[:-1] == self.frequency[1:]
+        return np.concatenate([[0], np.cumsum(same)]).astype(int)
 
     @property
     def frequency(self) -> Floats:
@@ -100,7 +108,7 @@ class Search:
 def begin(system: System, lo: float, hi: float, harmonics: int | None) -> Search:
     """Condense the system and set the scales of the search."""
     pb = condense(system)
-    grid = np.linspace(lo, hi, 65)
+    grid = np.linspace(lo, hi, _SEED_FREQUENCIES)
     largest = 0.0
     e = spring_polynomial(pb)
     for W in grid:
@@ -108,7 +116,16 @@ def begin(system: System, lo: float, hi: float, harmonics: int | None) -> Search
             largest = max(largest, float(np.max(np.abs(seed.harmonics[1]))))
     width = hi - lo
     outer = (max(lo - width, 0.02 * lo), hi + width)
-    return Search(system, pb, variation_of(system), lo, hi, outer, largest or 1.0, width, harmonics)
+    scale = largest or 1.0
+    variation = variation_of(system, *_strongest(pb, scale, hi)) if system.size > 3 else variation_of(system)
+    return Search(system, pb, variation, lo, hi, outer, scale, width, harmonics)
+
+
+def _strongest(pb: Problem, scale: float, hi: float) -> tuple[float, float]:
+    """Bound of the elements' slopes [N/m] at twice the largest amplitude expected, and the harmonic that matters."""
+    z = 2.0 * scale * np.linspace(-1.0, 1.0, 201)
+    slopes = [law_force_and_slopes(*row, pb.table, value, 0.0)[1] for row in pb.codes for value in z]
+    return float(np.max(np.abs(slopes))), 7.0 * hi
 
 
 def _seeds_at(pb: Problem, W: float, e: Floats | None, scale: float, odd: bool, first_only: bool = False) -> list[Seed]:
@@ -117,7 +134,7 @@ def _seeds_at(pb: Problem, W: float, e: Floats | None, scale: float, odd: bool, 
         return [seed for seed in seeds if len(seed.harmonics) == 1] if first_only else seeds
     if first_only:
         S, F = stiffness_at(pb, 1, W)
-        return [Seed(W, {1: np.linalg.solve(S, F)})]
+        return [Seed(W, {1: np.asarray(np.linalg.solve(S, F), dtype=complex)})]
     return searched_seeds(pb, W, scale, odd)
 
 
@@ -151,9 +168,16 @@ def find_branches(search: Search) -> list[Track]:
             if start is None or any(_lies_on(search, track, *start) for track in tracks):
                 continue
             tracks.append(_followed(search, odd, *start))
-    for track in tracks:
-        complete(search, track)
-    return tracks
+    tracks = [track for track in tracks if complete(search, track)]
+    for track in list(tracks):
+        tracks += asymmetric_branches(search, track, tracks)
+    return sorted(tracks, key=lambda track: _response_at(track, search.lo))
+
+
+def _response_at(track: Track, W: float) -> float:
+    """Smallest relative amplitude of a branch at one of its frequencies; infinite if it has no point there."""
+    here = track.frequency == W
+    return float(np.min(track.columns[here, 2])) if np.any(here) else math.inf
 
 
 def solve_seed(search: Search, seed: Seed, odd: bool) -> tuple[Floats, int] | None:
@@ -225,18 +249,105 @@ def _track(
     return Track(odd, ys, ts, Hs, truncations, columns, np.zeros((0, 0)), closed, endings)
 
 
-def complete(search: Search, track: Track) -> None:
-    """Give a followed branch its amplitudes and multipliers, refine it between hidden events, locate them all."""
+def complete(search: Search, track: Track) -> bool:
+    """Give a followed branch its amplitudes and multipliers, refine it between hidden events, locate them all.
+
+    Returns whether any of it lies in the window.
+    """
+    inside = (track.frequency >= search.lo) & (track.frequency <= search.hi)
+    if np.sum(inside) < 2:
+        return False
     _trim(search, track)
-    _describe(search, track)
+    track.columns, track.multipliers = _described(search, track.odd, track.ys, track.Hs)
     _uncover(search, track)
     _locate_events(search, track)
+    return True
 
 
-def _describe(search: Search, track: Track) -> None:
-    m = 2 * search.system.size
-    track.columns, track.multipliers = np.empty((len(track.Hs), 5)), np.empty((len(track.Hs), m), complex)
-    describe(search.problem, search.variation, track.odd, track.ys, track.Hs, track.columns, track.multipliers)
+def _described(search: Search, odd: bool, ys: Floats, Hs: np.ndarray) -> tuple[Floats, np.ndarray]:
+    """Columns and multipliers of points."""
+    columns, multipliers = np.empty((len(Hs), 5)), np.empty((len(Hs), 2 * search.variation.K.shape[0]), complex)
+    describe(search.problem, search.variation, odd, ys, Hs, columns, multipliers)
+    return columns, multipliers
+
+
+def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> list[Track]:
+    """Branches with even harmonics that leave an odd branch where it loses its symmetry.
+
+    One of each mirrored pair is followed, between the points at which it meets odd branches.
+    """
+    if not parent.odd:
+        return []
+    tracks: list[Track] = []
+    for event, point in zip(parent.events, parent.event_points, strict=True):
+        if event.kind != "branch-point" or point is None:
+            continue
+        ends = [c for t in known + tracks if not t.odd for c in (t.columns[0], t.columns[-1])]
+        if any(np.allclose(c[[0, 4]], event.columns[[0, 4]], rtol=2e-3) for c in ends):
+            continue
+        start = _asymmetric_start(search, *point)
+        if start is None:
+            continue
+        track = _half_of_pair(search, _followed(search, False, *start))
+        track.parent = parent
+        if complete(search, track):
+            tracks.append(track)
+    return tracks
+
+
+def _asymmetric_start(search: Search, y: Floats, _: Floats, H: int) -> tuple[Floats, int] | None:
+    """A point beside a loss of symmetry, off along the even null vector of the full Jacobian."""
+    pb = search.problem
+    r = pb.M11.shape[0]
+    full = np.zeros(search.size(False))
+    odd_n, n = unknowns(pb, H, True), unknowns(pb, H, False)
+    for m in range(odd_n // (2 * r)):
+        full[2 * r * (2 * m + 1) : 2 * r * (2 * m + 2)] = y[2 * r * m : 2 * r * (m + 1)]
+    full[n] = y[odd_n]
+    R, J, A = np.empty(n + 1), np.empty((n + 1, n + 1)), np.empty((n + 1, n + 1))
+    tables = fourier_tables(H, False, sample_count(pb, H, False))
+    residual_and_jacobian(pb, H, False, full[n], full, *tables, R, J)
+    null = np.linalg.svd(J[:n, :n])[2][-1]
+    normal = np.zeros(n + 1)
+    normal[:n] = null / np.linalg.norm(null)
+    for push in (0.02, 0.005, 0.05):
+        trial = full.copy()
+        trial[:n] += push * search.x_scale * normal[:n]
+        offset = float(normal[:n] @ trial[:n]) / search.x_scale
+        ok, _, _ = correct(
+            pb, H, False, trial, normal, offset, search.x_scale, search.w_scale, *tables, J, A,
+            np.empty(n + 1, np.int64), 1e-9, 15,
+        )  # fmt: skip
+        if ok and np.linalg.norm(_even_part(search, trial, H)) > 0.3 * push * search.x_scale:
+            return trial, H
+    return None
+
+
+def _even_part(search: Search, y: Floats, H: int) -> Floats:
+    """Mean and even harmonics of a point with all harmonics, flat."""
+    r = search.problem.M11.shape[0]
+    n = unknowns(search.problem, H, False)
+    return y[:n].reshape(-1, 2 * r)[::2].ravel()
+
+
+def _half_of_pair(search: Search, track: Track) -> Track:
+    """Cut an asymmetric branch where it passes through a symmetric orbit into its mirror image."""
+    parts = [_even_part(search, y, H) for y, H in zip(track.ys, track.Hs, strict=True)]
+    flips = [
+        i for i in range(len(parts) - 1)
+        if float(np.dot(*(p[: min(parts[i].size, parts[i + 1].size)] for p in parts[i : i + 2]))) < 0
+    ]  # fmt: skip
+    if not flips:
+        return track
+    if track.closed:
+        order = np.concatenate([np.arange(flips[0] + 1, len(parts) - 1), np.arange(flips[0] + 1)])
+        keep = order[: ((flips[1] if len(flips) > 1 else flips[0]) - flips[0]) or len(order)]
+    else:
+        start = int(np.argmax([np.linalg.norm(p) for p in parts]))
+        low = max([i + 1 for i in flips if i < start], default=0)
+        keep = np.arange(low, min([i + 1 for i in flips if i >= start], default=len(parts)))
+    part = [track.ys[keep], track.ts[keep], track.Hs[keep], track.truncations[keep]]
+    return _track(search, False, [tuple(part)], False, track.endings)
 
 
 def _trim(search: Search, track: Track) -> None:
@@ -252,6 +363,13 @@ def _trim(search: Search, track: Track) -> None:
                 rows.append((*_on_edge(search, track, i, edge), track.truncations[i]))
     track.ys, track.ts = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
     track.Hs, track.truncations = np.array([row[2] for row in rows]), np.array([row[3] for row in rows])
+    W = track.ys[np.arange(len(rows)), [unknowns(search.problem, H, track.odd) for H in track.Hs]]
+    track.columns = np.column_stack([W, np.zeros((len(rows), 4))])
+    gaps = np.flatnonzero((W[:-1] == W[1:]) & ((W[1:] == search.lo) | (W[1:] == search.hi))) + 1
+    if track.closed and gaps.size:  # begin where the branch comes into the window, not in the middle of a piece
+        order = np.concatenate([np.arange(gaps[0], len(rows)), np.arange(1, gaps[0])])
+        track.ys, track.ts, track.Hs = track.ys[order], track.ts[order], track.Hs[order]
+        track.truncations, track.columns = track.truncations[order], track.columns[order]
 
 
 def _on_edge(search: Search, track: Track, i: int, edge: float) -> tuple[Floats, Floats, int]:
@@ -281,6 +399,7 @@ def _uncover(search: Search, track: Track) -> None:
         hidden = ((mid - left) * (mid - right) > 0) & (np.sign(summit) != np.sign(mid)) & (np.abs(bend) > 1e-12)
         rows = np.flatnonzero(hidden.any(axis=1)) + 1
         wanted = np.unique(np.concatenate([rows - 1, rows])) if rows.size else rows
+        wanted = wanted[track.frequency[wanted] != track.frequency[wanted + 1]]  # not across a gap between pieces
         if not _insert(search, track, wanted):
             return
 
@@ -292,15 +411,23 @@ def _insert(search: Search, track: Track, after: np.ndarray) -> bool:
         point = _midpoint(search, track, int(i))
         if point is not None:
             new.append((int(i), point))
+    _put_in(search, track, new)
+    return bool(new)
+
+
+def _put_in(search: Search, track: Track, new: list[tuple[int, tuple[Floats, Floats, int]]]) -> None:
+    """Put points behind the given indices of a branch."""
     if not new:
-        return False
+        return
     at = [i + 1 for i, _ in new]
-    track.ys = np.insert(track.ys, at, [p[0] for _, p in new], axis=0)
-    track.ts = np.insert(track.ts, at, [p[1] for _, p in new], axis=0)
-    track.Hs = np.insert(track.Hs, at, [p[2] for _, p in new])
+    ys, ts = np.array([point[0] for _, point in new]), np.array([point[1] for _, point in new])
+    Hs = np.array([point[2] for _, point in new])
+    columns, multipliers = _described(search, track.odd, ys, Hs)
+    track.ys, track.ts = np.insert(track.ys, at, ys, axis=0), np.insert(track.ts, at, ts, axis=0)
+    track.Hs = np.insert(track.Hs, at, Hs)
     track.truncations = np.insert(track.truncations, at, [track.truncations[i] for i, _ in new])
-    _describe(search, track)
-    return True
+    track.columns = np.insert(track.columns, at, columns, axis=0)
+    track.multipliers = np.insert(track.multipliers, at, multipliers, axis=0)
 
 
 def _midpoint(search: Search, track: Track, i: int, fraction: float = 0.5) -> tuple[Floats, Floats, int] | None:
@@ -312,9 +439,7 @@ def _midpoint(search: Search, track: Track, i: int, fraction: float = 0.5) -> tu
     for k in (0, 1):
         same_harmonics(pb, odd, track.ys[i + k], track.ts[i + k], track.Hs[i + k], H, ends[k], ends[2 + k])
     y, t = np.zeros(search.size(odd)), np.zeros(search.size(odd))
-    ok = between(
-        pb, odd, ends[0], ends[2], ends[1], ends[3], H, fraction, search.x_scale, search.w_scale, y, t
-    )
+    ok = between(pb, odd, ends[0], ends[2], ends[1], ends[3], H, fraction, search.x_scale, search.w_scale, y, t)
     return (y, t, H) if ok else None
 
 
@@ -324,10 +449,9 @@ def _locate_events(search: Search, track: Track) -> None:
     ends = [unknowns(pb, H, odd) for H in track.Hs]
     rise = track.ts[np.arange(len(ends)), ends]
     unstable = np.sum(np.abs(track.multipliers) > 1, axis=1)
-    inserted: list[tuple[int, Floats, Floats, int]] = []
+    inserted: list[tuple[int, tuple[Floats, Floats, int]]] = []
     for i, j in itertools.pairwise(range(len(ends))):
-        gap = track.frequency[i] in (search.lo, search.hi) and track.frequency[j] in (search.lo, search.hi)
-        if gap and _is_gap(track, i):
+        if track.frequency[i] == track.frequency[j]:  # the branch was outside the window in between
             continue
         folded = rise[i] * rise[j] < 0
         ranks = list(range(min(unstable[i], unstable[j]), max(unstable[i], unstable[j])))
@@ -337,26 +461,15 @@ def _locate_events(search: Search, track: Track) -> None:
             pairs = ranks[::2] if len(ranks) % 2 == 0 else ranks
             for rank in pairs:
                 inserted += _one_event(search, track, i, rank)
-    if inserted:
-        at = [i + 1 for i, *_ in inserted]
-        track.ys = np.insert(track.ys, at, [p[1] for p in inserted], axis=0)
-        track.ts = np.insert(track.ts, at, [p[2] for p in inserted], axis=0)
-        track.Hs = np.insert(track.Hs, at, [p[3] for p in inserted])
-        track.truncations = np.insert(track.truncations, at, [track.truncations[i] for i, *_ in inserted])
-        _describe(search, track)
+    _put_in(search, track, inserted)
 
 
-def _is_gap(track: Track, i: int) -> bool:
-    """Whether two neighbouring points on the window's edges belong to different pieces of the branch."""
-    return track.frequency[i] == track.frequency[i + 1]
-
-
-def _one_event(search: Search, track: Track, i: int, rank: int) -> list[tuple[int, Floats, Floats, int]]:
+def _one_event(search: Search, track: Track, i: int, rank: int) -> list[tuple[int, tuple[Floats, Floats, int]]]:
     """Locate one event between points i and i + 1, note it, and return its point for insertion."""
     pb, odd = search.problem, track.odd
     size = search.size(odd)
     y, t = np.zeros(size), np.zeros(size)
-    multipliers = np.zeros(2 * search.system.size, complex)
+    multipliers = np.zeros(2 * search.variation.K.shape[0], complex)
     ok, H, half = locate(
         pb, search.variation, odd, track.ys[i], track.ts[i], track.Hs[i], track.ys[i + 1], track.ts[i + 1],
         track.Hs[i + 1], rank, search.x_scale, search.w_scale, y, t, multipliers,
@@ -366,12 +479,13 @@ def _one_event(search: Search, track: Track, i: int, rank: int) -> list[tuple[in
         middle = 0.5 * (track.columns[i] + track.columns[i + 1])
         half = 0.5 * abs(track.frequency[i + 1] - track.frequency[i])
         track.events.append(LocatedEvent(kind, middle, half, False))
+        track.event_points.append(None)
         return []
-    columns, again = np.empty((1, 5)), np.empty((1, multipliers.size), complex)
-    describe(pb, search.variation, odd, y[None], np.array([H]), columns, again)
+    columns, _ = _described(search, odd, y[None], np.array([H]))
     kind = "saddle-node" if rank < 0 else _kind(odd, multipliers[rank])
     track.events.append(LocatedEvent(kind, columns[0], float(half), True))
-    return [(i, y, t, int(H))]
+    track.event_points.append((y, t, int(H)))
+    return [(i, (y, t, int(H)))]
 
 
 def _kind(odd: bool, multiplier: complex) -> str:
@@ -381,11 +495,3 @@ def _kind(odd: bool, multiplier: complex) -> str:
     if multiplier.real > 0:
         return "branch-point"
     return "branch-point" if odd else "period-doubling"
-
-
-def is_detached(track: Track, main: Track) -> bool:
-    """Whether a branch has no connection, as far as it was followed, with the main one."""
-    return track is not main
-
-
-ENDINGS = {LEFT: "left the searched range", CLOSED: "closed", NO_START: "could not be started"}

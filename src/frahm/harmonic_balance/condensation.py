@@ -66,30 +66,29 @@ def condense(system: System) -> Problem:
     r = P.shape[1]
     Q = scipy.linalg.null_space(N.T)
     T = np.column_stack([P, Q])
-    blocks = [T.T @ matrix @ T for matrix in (system.mass, C, K)]
+    M_, C_, K_ = (np.ascontiguousarray(T.T @ matrix @ T) for matrix in (system.mass, C, K))
+    blocks = (M_, C_, K_)
     f = T.T @ system.forcing
     poles, R, L = _poles(*(block[r:, r:] for block in blocks))
     first = system.elements[0].direction if system.elements else np.zeros(system.size)
     outputs = np.vstack([system.output, first, np.eye(system.size)]) @ T
-    a = [np.ascontiguousarray((block[:r, r:] @ R).T) for block in blocks]
-    b = [np.ascontiguousarray(L @ block[r:, :r]) for block in blocks]
+    a2, a1, a0 = (np.ascontiguousarray((block[:r, r:] @ R).T) for block in blocks)
+    b2, b1, b0 = (np.ascontiguousarray(L @ block[r:, :r]) for block in blocks)
     nonlinear = [_without_linear_part(element.law) for element in active]
     codes, table = pack_laws(nonlinear)
+    M11, C11, K11 = (np.ascontiguousarray(block[:r, :r]) for block in blocks)
     return Problem(
-        *(np.ascontiguousarray(block[:r, :r]) for block in blocks),
-        poles,
-        *a,
-        *b,
-        f[:r].astype(complex),
-        L @ f[r:],
-        np.ascontiguousarray(outputs[:, :r]),
-        np.ascontiguousarray(outputs[:, r:] @ R),
-        np.ascontiguousarray(directions),
-        codes,
-        table,
-        max(law.coefficients.size for law in nonlinear),
-        all(law.is_odd for law in nonlinear),
-    )
+        M11=M11, C11=C11, K11=K11, poles=poles, a2=a2, a1=a1, a0=a0, b2=b2, b1=b1, b0=b0,
+        force_u=f[:r].astype(complex),
+        force_y=L @ f[r:],
+        out_u=np.ascontiguousarray(outputs[:, :r]),
+        out_y=np.ascontiguousarray(outputs[:, r:] @ R),
+        directions=np.ascontiguousarray(directions),
+        codes=codes,
+        table=table,
+        degree=max(law.coefficients.size for law in nonlinear),
+        odd=all(law.is_odd for law in nonlinear),
+    )  # fmt: skip
 
 
 def linear_part(system: System) -> tuple[Floats, Floats]:
@@ -110,7 +109,7 @@ def _relative_coordinates(N: Floats) -> tuple[Floats, Floats]:
     """P with x = P u + ..., and directions with z_e = directions[:, e] . u; u = z where the elements allow it."""
     rank = np.linalg.matrix_rank(N)
     if rank == N.shape[1]:
-        return np.linalg.solve(N.T @ N, N.T).T, np.eye(rank)
+        return np.asarray(np.linalg.solve(N.T @ N, N.T).T, dtype=float), np.eye(rank)
     V = np.linalg.svd(N)[0][:, :rank]
     return V, V.T @ N
 

@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import scipy.linalg
 
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Floats
@@ -22,6 +23,7 @@ from frahm.systems import System
 
 _NODES = 9
 _ORDER = 14
+_LANES = 4
 _ADVANCE = 1.2  # fastest motion per step [rad]
 _TURN = 2.0  # highest harmonic per step [rad]
 _POINTS = 0.5 - 0.5 * np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
@@ -29,30 +31,65 @@ _TO_POWERS = np.linalg.inv(_POINTS[:, None] ** np.arange(_NODES))
 
 
 class Variation(NamedTuple):
-    """Matrices of the variational equation: M^-1 K, M^-1 C (n, n), M^-1 N (n, E), N^T (E, n), fastest frequency."""
+    """Matrices of the variational equation in m coordinates: x'' + C x' + K x + push P(t) feel x = 0.
 
-    K: Floats
-    C: Floats
-    push: Floats
-    feel: Floats
+    P is made of the slopes p_e: diagonal, or P (1 + flexibility P)^-1 where faster modes follow statically.
+    """
+
+    K: Floats  # (m, m)
+    C: Floats  # (m, m)
+    push: Floats  # (m, E)
+    feel: Floats  # (E, m)
+    flexibility: Floats  # (E, E)
     fastest: float
-    hardest: Floats  # (E,): n^T M^-1 n, stiffness to frequency squared
+    hardest: Floats  # (E,): stiffness of an element to frequency squared
 
 
-def variation_of(system: System) -> Variation:
-    """Matrices of the variational equation of a system; elements with linear laws belong to C and K."""
+def variation_of(system: System, steepest: float = math.inf, turn: float = math.inf) -> Variation:
+    """Variational equation of a system; elements with linear laws belong to C and K.
+
+    Parameters
+    ----------
+    system : System
+    steepest : float
+        Largest slope p_e [N/m] that will occur. Modes that such a slope can neither excite parametrically against
+        their damping nor drag along by more than 1e-7 are replaced by their static flexibility; infinite: none are.
+    turn : float
+        Frequency [rad/s] of the highest harmonic that matters.
+    """
     C, K = linear_part(system)
     active = [element.direction for element in system.elements if not element.law.is_linear]
     N = np.column_stack(active) if active else np.zeros((system.size, 0))
-    inverse = np.linalg.inv(system.mass)
-    A = np.block([[np.zeros_like(K), np.eye(system.size)], [-inverse @ K, -inverse @ C]])
+    if not math.isfinite(steepest) or not np.allclose(K, K.T, rtol=1e-12, atol=0):
+        inverse = np.linalg.inv(system.mass)
+        return _variation(inverse @ K, inverse @ C, inverse @ N, N.T, np.zeros((N.shape[1], N.shape[1])))
+    squares, modes = scipy.linalg.eigh(K, system.mass)
+    squares = np.maximum(squares, 0.0)
+    damping, feel = modes.T @ C @ modes, N.T @ modes
+    keep = _lively(np.sqrt(squares), np.diag(damping), np.sum(feel**2, axis=0), steepest, turn)
+    rest = feel[:, ~keep] / squares[~keep] @ feel[:, ~keep].T if np.any(~keep) else np.zeros((len(feel), len(feel)))
+    return _variation(np.diag(squares[keep]), damping[np.ix_(keep, keep)], feel[:, keep].T, feel[:, keep], rest)
+
+
+def _lively(omega: Floats, damping: Floats, coupling: Floats, steepest: float, turn: float) -> np.ndarray:
+    """Which modes must be kept: slow ones, and those a slope could excite or drag along noticeably."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        excited = steepest * coupling / (2 * omega) > 0.1 * damping
+        dragged = steepest * coupling / omega**2 * (turn / omega) ** 2 > 1e-7
+    return np.asarray(excited | dragged | (omega < 2 * turn))
+
+
+def _variation(K: Floats, C: Floats, push: Floats, feel: Floats, flexibility: Floats) -> Variation:
+    m = K.shape[0]
+    A = np.block([[np.zeros((m, m)), np.eye(m)], [-K, -C]])
     return Variation(
-        np.ascontiguousarray(inverse @ K),
-        np.ascontiguousarray(inverse @ C),
-        np.ascontiguousarray(inverse @ N),
-        np.ascontiguousarray(N.T),
+        np.ascontiguousarray(K),
+        np.ascontiguousarray(C),
+        np.ascontiguousarray(push),
+        np.ascontiguousarray(feel),
+        np.ascontiguousarray(flexibility),
         float(np.max(np.abs(np.linalg.eigvals(A)))),
-        np.einsum("ie,ij,je->e", N, inverse, N),
+        np.ascontiguousarray(np.einsum("em,me->e", feel, push)),
     )
 
 
@@ -63,7 +100,6 @@ def monodromy(pb, va, H, odd, W, u, Phi):
     u (H + 5, r) are the harmonics of the relative coordinates.
     """
     n, E = va.K.shape[0], va.feel.shape[0]
-    r = pb.M11.shape[0]
     m = 2 * n
     span = (math.pi if odd else 2.0 * math.pi) / W
     slope = np.empty(E)
@@ -71,37 +107,45 @@ def monodromy(pb, va, H, odd, W, u, Phi):
     square = va.fastest**2
     for e in range(E):
         square += va.hardest[e] * slope[e]
-    steps = int(math.ceil(max(span * math.sqrt(square) / _ADVANCE, span * W * _reach(H, u) / _TURN, 3.0)))
+    steps = math.ceil(max(span * math.sqrt(square) / _ADVANCE, span * W * _reach(H, u) / _TURN, 3.0))
     h = span / steps
     Phi[:] = 0.0
     for i in range(m):
         Phi[i, i] = 1.0
-    X, V = np.empty((_ORDER + 1, n, m)), np.empty((_ORDER + 1, n, m))
-    Z = np.empty((_ORDER + 1, E, m))
+    X, V, Z = np.zeros((_ORDER + 1, n, _LANES)), np.zeros((_ORDER + 1, n, _LANES)), np.zeros((_ORDER + 1, E, _LANES))
     values, p = np.empty(_NODES), np.empty((E, _NODES))
     for step in range(steps):
         for e in range(E):
             for j in range(_NODES):
                 z = element_displacement(pb, e, H, odd, u, W * h * (step + _POINTS[j]))
-                _, values[j], _ = law_force_and_slopes(
-                    pb.codes[e, 0], pb.codes[e, 1], pb.codes[e, 2], pb.table, z, 0.0
-                )
+                _, values[j], _ = law_force_and_slopes(pb.codes[e, 0], pb.codes[e, 1], pb.codes[e, 2], pb.table, z, 0.0)
             for i in range(_NODES):
                 total = 0.0
                 for j in range(_NODES):
                     total += _TO_POWERS[i, j] * values[j]
                 p[e, i] = total
-        for i in range(n):
-            for c in range(m):
-                X[0, i, c], V[0, i, c] = Phi[i, c], Phi[n + i, c]
-        _taylor_step(va, p, h, X, V, Z)
-        for i in range(n):
-            for c in range(m):
-                x, v = X[_ORDER, i, c], V[_ORDER, i, c]
-                for k in range(_ORDER - 1, -1, -1):
-                    x += X[k, i, c]
-                    v += V[k, i, c]
-                Phi[i, c], Phi[n + i, c] = x, v
+        for start in range(0, m, _LANES):  # a few columns at a time, so that they fill a vector register
+            width = min(_LANES, m - start)
+            for i in range(n):
+                for c in range(width):
+                    X[0, i, c], V[0, i, c] = Phi[i, start + c], Phi[n + i, start + c]
+            _taylor_step(va, p, h, X, V, Z)
+            for i in range(n):
+                for c in range(width):
+                    x, v = X[_ORDER, i, c], V[_ORDER, i, c]
+                    for k in range(_ORDER - 1, -1, -1):
+                        x += X[k, i, c]
+                        v += V[k, i, c]
+                    Phi[i, start + c], Phi[n + i, start + c] = x, v
+
+
+@kernel
+def _behind(slopes, flexibility):
+    """Slopes felt through a static flexibility in series with the elements."""
+    E = slopes.shape[0]
+    if E == 1:
+        return slopes / (1.0 + flexibility[0, 0] * slopes[0, 0])
+    return slopes @ np.linalg.inv(np.eye(E) + flexibility @ slopes)
 
 
 @kernel
@@ -148,37 +192,40 @@ def _steepest(pb, H, odd, u, slope):
 
 @kernel
 def _taylor_step(va, p, h, X, V, Z):
-    """Power series of all columns over one step, in the time scaled to the step: term k is the k-th summand."""
+    """Power series of some columns over one step, in the time scaled to the step: term k is the k-th summand."""
     n, E = va.K.shape[0], va.feel.shape[0]
-    m = X.shape[2]
     for k in range(_ORDER):
         factor = h / (k + 1.0)
         for e in range(E):
-            for c in range(m):
+            for c in range(_LANES):
                 Z[k, e, c] = 0.0
             for j in range(n):
                 feel = va.feel[e, j]
                 if feel != 0.0:
-                    for c in range(m):
+                    for c in range(_LANES):
                         Z[k, e, c] += feel * X[k, j, c]
         for i in range(n):
-            for c in range(m):
+            for c in range(_LANES):
                 X[k + 1, i, c] = factor * V[k, i, c]
                 V[k + 1, i, c] = 0.0
             for j in range(n):
-                stiff, damp = va.K[i, j], va.C[i, j]
+                stiff, damp = va.K[i, j] * factor, va.C[i, j] * factor
                 if stiff != 0.0 or damp != 0.0:
-                    for c in range(m):
+                    for c in range(_LANES):
                         V[k + 1, i, c] -= stiff * X[k, j, c] + damp * V[k, j, c]
-            for e in range(E):
+        for e in range(E):  # the element's force once, then pushed on every coordinate
+            for c in range(_LANES):
+                Z[_ORDER, e, c] = 0.0
+            for f in range(E):
+                for q in range(min(k, _NODES - 1) + 1):
+                    weight = p[e, f, q] * factor
+                    for c in range(_LANES):
+                        Z[_ORDER, e, c] += weight * Z[k - q, f, c]
+            for i in range(n):
                 push = va.push[i, e]
                 if push != 0.0:
-                    for q in range(min(k, _NODES - 1) + 1):
-                        weight = push * p[e, q]
-                        for c in range(m):
-                            V[k + 1, i, c] -= weight * Z[k - q, e, c]
-            for c in range(m):
-                V[k + 1, i, c] *= factor
+                    for c in range(_LANES):
+                        V[k + 1, i, c] -= push * Z[_ORDER, e, c]
 
 
 @kernel

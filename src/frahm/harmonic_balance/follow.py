@@ -14,7 +14,7 @@ LEFT, CLOSED, STEP_TOO_SMALL, TOO_LONG, NO_START = 0, 1, 2, 3, 4
 
 _ANGLE = 0.25  # turn of the tangent aimed at per step [rad]
 _SHARPEST = 0.5  # turn beyond which a step is taken again, shorter [rad]
-_TOLERANCE = 1e-9  # last Newton step, in scaled unknowns
+_TOLERANCE = 3e-7  # last Newton step, in scaled unknowns: what remains is of the order of its square
 
 
 @kernel
@@ -53,10 +53,7 @@ def follow(pb, odd, y0, H0, H_most, goal, direction, lo, hi, x_scale, w_scale, l
             scale = w_scale if j == n else x_scale
             y[j] = ys[count - 1, j] + (t[j] + bend) * ds * scale
             offset += t[j] * y[j] / scale
-        H_step, n_step = H, n
-        ok, truncation, moved = correct(
-            pb, H, odd, y, t, offset, x_scale, w_scale, co, si, J, A, pivots, _TOLERANCE, 7
-        )
+        ok, truncation, moved = correct(pb, H, odd, y, t, offset, x_scale, w_scale, co, si, J, A, pivots, _TOLERANCE, 7)
         along = 0.0
         if ok and moved < 0.5 * ds:
             along = tangent(A, pivots, n, t, t_new)

@@ -137,7 +137,7 @@ def locate(pb, va, odd, ya, ta, Ha, yb, tb, Hb, rank, x_scale, w_scale, y, t, mu
         return False, H, 0.0
     width = abs(b[n] - a[n])
     last, f_last = a[n], fa
-    for iteration in range(60):
+    for _ in range(60):
         middle = 0.5 * (lo + hi) if fa == fb else (lo * fb - hi * fa) / (fb - fa)
         if not between(pb, odd, a, sa, b, sb, H, middle, x_scale, w_scale, y, t):
             return False, H, width

@@ -1,7 +1,7 @@
 """Room `response`: one verb for the response curve, whatever the method, and maps of it."""
 
 from frahm.response.curve import Branch, ResponseCurve, SpecialPoint
-from frahm.response.frequency_response import frequency_response
+from frahm.response.frequency_response import frequency_response, periodic_responses
 from frahm.response.maps import slow_flow_map, stability_boundaries
 
 __all__ = [
@@ -9,6 +9,7 @@ __all__ = [
     "ResponseCurve",
     "SpecialPoint",
     "frequency_response",
+    "periodic_responses",
     "slow_flow_map",
     "stability_boundaries",
 ]

@@ -6,12 +6,14 @@ import math
 from typing import Any
 
 from frahm.case import Case
-from frahm.errors import check_choice, check_count
+from frahm.errors import ParameterError, check_choice, check_count
+from frahm.harmonic_balance import PeriodicResponse, periodic_responses_of
 from frahm.response.curve import ResponseCurve, SpecialPoint
+from frahm.response.exact import exact_curve
 from frahm.slow_flow import SlowBranches, SlowFlow, pipe_scale, slow_branches, slow_flow_of
-from frahm.systems import System, as_system, detuning_of, excitation_window
+from frahm.systems import System, as_system, detuning_of, excitation_frequency, excitation_window
 
-METHODS = ("slow-flow",)
+METHODS = ("harmonic-balance", "slow-flow")
 _RESOLUTION = 1e-11
 
 
@@ -20,8 +22,9 @@ def frequency_response(
     *,
     detuning: tuple[float, float] | None = None,
     frequency: tuple[float, float] | None = None,
-    method: str = "slow-flow",
+    method: str = "harmonic-balance",
     form: str = "averaged",
+    harmonics: int | str = "auto",
     points: int = 2000,
 ) -> ResponseCurve:
     """All periodic responses over a window of the excitation frequency, with stability and special points.
@@ -35,11 +38,15 @@ def frequency_response(
     frequency : tuple of float, optional
         Window (lo, hi) in Omega [rad/s]; give one of the two.
     method : str
-        "slow-flow": the one-harmonic theory of one mode with one cubic sink, every branch in closed form.
+        "harmonic-balance": the exact equations of any system. "slow-flow": the one-harmonic theory of one mode with
+        one cubic sink, every branch in closed form.
     form : str
-        "averaged" or "paper" (doi 10.3390/app12147272).
+        Of the slow flow: "averaged" or "paper" (doi 10.3390/app12147272).
+    harmonics : int or "auto"
+        Of the harmonic balance: the highest harmonic, or as many as bring the unbalanced force below 1e-8.
     points : int
-        Number of frequencies of the grid; special points are added exactly.
+        Number of frequencies of the slow flow's grid; special points are added exactly. The harmonic balance chooses
+        its points itself.
 
     Returns
     -------
@@ -54,9 +61,48 @@ def frequency_response(
     check_choice("method", method, METHODS)
     lo, hi = excitation_window(system, detuning=detuning, frequency=frequency)
     count = check_count("points", points, at_least=2, at_most=10_000_000)
+    if method == "harmonic-balance":
+        return exact_curve(system, lo, hi, highest_harmonic(harmonics))
     slow = slow_flow_of(system, form)
     settings = {"method": method, "form": form, "frequency_window": (lo, hi), "points": count}
     return _curve(system, slow, slow_branches(slow, lo, hi, count), settings)
+
+
+def periodic_responses(
+    case_or_system: Case | System | str,
+    *,
+    detuning: float | None = None,
+    frequency: float | None = None,
+    harmonics: int | str = "auto",
+) -> list[PeriodicResponse]:
+    """All periodic responses of the exact equations at one excitation frequency, by ascending relative amplitude.
+
+    Parameters
+    ----------
+    case_or_system : Case, System or str
+        What is excited.
+    detuning, frequency : float
+        sigma or Omega [rad/s]; give one of the two.
+    harmonics : int or "auto"
+        Highest harmonic, or as many as needed.
+
+    Returns
+    -------
+    list of PeriodicResponse
+        Responses with the period of the excitation; both of a mirrored pair are listed.
+    """
+    system = as_system(case_or_system)
+    W = excitation_frequency(system, detuning=detuning, frequency=frequency)
+    return periodic_responses_of(system, W, highest_harmonic(harmonics))
+
+
+def highest_harmonic(harmonics: int | str) -> int | None:
+    """The user's highest harmonic, None for "auto"."""
+    if isinstance(harmonics, str):
+        if harmonics != "auto":
+            raise ParameterError("harmonics", harmonics, 'a whole number from 1 to 201, or "auto"')
+        return None
+    return check_count("harmonics", harmonics, at_least=1, at_most=201)
 
 
 def _curve(system: System, slow: SlowFlow, found: SlowBranches, settings: dict[str, Any]) -> ResponseCurve:

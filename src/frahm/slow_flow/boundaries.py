@@ -98,12 +98,12 @@ def boundary_curves(
 
 def _check_plane(slow: SlowFlow, plane: tuple[str, str], bounds: tuple[tuple[float, float], ...]) -> None:
     allowed = "two different names out of " + ", ".join(AXES)
+    unknown = [str(axis) for axis in plane if axis not in AXES]
     if len(plane) != 2 or plane[0] == plane[1]:
         raise ParameterError("plane", plane, allowed)
-    for axis in plane:
-        if axis not in AXES:
-            near = nearest(str(axis), AXES)
-            raise ParameterError("plane", axis, allowed, hint=f"Did you mean {near!r}?" if near else None)
+    for axis in unknown:
+        near = nearest(axis, AXES)
+        raise ParameterError("plane", axis, allowed, hint=f"Did you mean {near!r}?" if near else None)
     if len(bounds) != 2 or any(len(pair) != 2 for pair in bounds):
         raise ParameterError("bounds", bounds, "((lo, hi), (lo, hi)), one pair for each axis of the plane")
     for axis, (lo, hi) in zip(plane, bounds, strict=True):

@@ -1,0 +1,17 @@
+"""Room `harmonic_balance`: exact periodic responses, every branch, with Floquet multipliers and special points."""
+
+from frahm.harmonic_balance.branches import Search, Track, begin, find_branches
+from frahm.harmonic_balance.linear import is_linear, linear_growth, linear_response
+from frahm.harmonic_balance.responses import PeriodicResponse, periodic_responses_of
+
+__all__ = [
+    "PeriodicResponse",
+    "Search",
+    "Track",
+    "begin",
+    "find_branches",
+    "is_linear",
+    "linear_growth",
+    "linear_response",
+    "periodic_responses_of",
+]

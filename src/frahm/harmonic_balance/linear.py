@@ -1,0 +1,51 @@
+"""Systems without a nonlinear element, or without forcing: one branch, known in closed form."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from frahm.arrays import Complexes, Floats
+from frahm.errors import ParameterError
+from frahm.harmonic_balance.condensation import linear_part
+from frahm.systems import System
+
+
+def is_linear(system: System) -> bool:
+    """Whether every element of the system has a linear law."""
+    return all(element.law.is_linear for element in system.elements)
+
+
+def linear_response(system: System, frequency: Floats) -> Complexes:
+    """Complex amplitudes (points, n) [m] of the linear part: x = Re X e^{i Omega t}.
+
+    Raises
+    ------
+    ParameterError
+        If the linear part is undamped and in resonance at one of the frequencies.
+    """
+    C, K = linear_part(system)
+    W = np.asarray(frequency, dtype=float)[:, None, None]
+    D = K - W**2 * system.mass + 1j * W * C
+    worst = np.max(np.linalg.cond(D)) if W.size else 0.0
+    if not worst < 1e14:
+        raise ParameterError(
+            "damping", "none at a resonance inside the window", "a damped structure, or a window without its resonance",
+            hint="An undamped linear structure has no bounded response at its natural frequency.",
+        )  # fmt: skip
+    return np.asarray(np.linalg.solve(D, system.forcing.astype(complex)[None, :, None])[..., 0])
+
+
+def linear_exponents(system: System) -> Complexes:
+    """Eigenvalues [1/s] of the linear part, elements' linear springs and dampers included."""
+    C, K = linear_part(system)
+    n = system.size
+    inverse = np.linalg.inv(system.mass)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ K, -inverse @ C]])
+    return np.asarray(np.linalg.eigvals(A), dtype=complex)
+
+
+def linear_growth(system: System) -> float:
+    """Largest growth rate of a disturbance [1/s]; a coordinate that rests wherever it is put does not count."""
+    values = linear_exponents(system)
+    moving = values[np.abs(values) > 1e-9 * np.max(np.abs(values), initial=1.0)]
+    return float(np.max(moving.real, initial=-np.inf))

@@ -1,0 +1,181 @@
+"""All periodic responses at one frequency."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from frahm.arrays import Complexes, Floats, frozen
+from frahm.harmonic_balance.branches import Search, Track, begin, find_branches
+from frahm.harmonic_balance.floquet import monodromy, variation_of
+from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic, unknowns
+from frahm.harmonic_balance.linear import is_linear, linear_exponents, linear_response
+from frahm.harmonic_balance.newton import solve_at
+from frahm.harmonic_balance.orbits import peak_of
+from frahm.systems import System
+
+_NEIGHBOURHOOD = 0.03
+_FINE_GOAL = 1e-11
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicResponse:
+    """One periodic response with the period of the excitation.
+
+    Attributes
+    ----------
+    frequency : float
+        Omega [rad/s].
+    harmonics : dict of int to ndarray, shape (n,)
+        Complex amplitudes X_k [m] of all coordinates: x(t) = Re sum_k X_k e^{i k Omega t}.
+    multipliers : ndarray of complex, shape (2n,)
+        Floquet multipliers over one period, by descending modulus.
+    stable : bool
+        Whether all multipliers lie inside the unit circle.
+    pipe_peak, relative_peak : float
+        max |x_out| and max |z| over a period [m].
+    pipe_amplitude, relative_amplitude : float
+        First-harmonic amplitudes [m].
+    residual : float
+        Force harmonics that nothing balances, relative to all forces [-].
+    symmetric : bool
+        Whether x(t + T/2) = -x(t).
+    """
+
+    frequency: float
+    harmonics: dict[int, Complexes]
+    multipliers: Complexes
+    stable: bool
+    pipe_peak: float
+    relative_peak: float
+    pipe_amplitude: float
+    relative_amplitude: float
+    residual: float
+    symmetric: bool
+
+    @property
+    def period(self) -> float:
+        """Period of the excitation [s]."""
+        return 2 * np.pi / self.frequency
+
+    @property
+    def state(self) -> Floats:
+        """State at t = 0, in the order of `initial_state`: x_0, v_0, x_1, v_1, ... [m, m/s]."""
+        x = sum(X.real for X in self.harmonics.values())
+        v = sum((1j * k * self.frequency * X).real for k, X in self.harmonics.items())
+        return frozen(np.column_stack([x, v]).ravel())
+
+    def x(self, time: ArrayLike) -> Floats:
+        """Displacements [m] of all coordinates at the given times, shape (times, n)."""
+        t = np.atleast_1d(np.asarray(time, dtype=float))[:, None]
+        return np.asarray(sum((X * np.exp(1j * k * self.frequency * t)).real for k, X in self.harmonics.items()))
+
+
+def periodic_responses_of(system: System, frequency: float, harmonics: int | None) -> list[PeriodicResponse]:
+    """All periodic responses at Omega = `frequency` [rad/s], by ascending relative amplitude.
+
+    Branches are searched and followed over a neighbourhood of the frequency, so that a response is found even where
+    the first harmonic alone does not see it.
+    """
+    if is_linear(system) or not np.any(system.forcing):
+        return [_linear(system, frequency)]
+    search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
+    found: list[PeriodicResponse] = []
+    for track in find_branches(search):
+        for X, H in _crossings(search, track, frequency):
+            response = _response(search, track.odd, X, H, frequency)
+            if not any(_same(response, other) for other in found):
+                found.append(response)
+            if not track.odd and search.problem.odd:
+                mirrored = _response(search, False, _mirrored(search, X, H), H, frequency)
+                if not any(_same(mirrored, other) for other in found):
+                    found.append(mirrored)
+    return sorted(found, key=lambda response: response.relative_amplitude)
+
+
+def _crossings(search: Search, track: Track, W: float) -> list[tuple[Floats, int]]:
+    """Solutions of a branch at one frequency, after Newton there with harmonics added as needed."""
+    pb, odd = search.problem, track.odd
+    out = []
+    for i in np.flatnonzero((track.frequency[:-1] - W) * (track.frequency[1:] - W) <= 0):
+        a, b = track.frequency[i], track.frequency[i + 1]
+        f = 0.5 if a == b else (W - a) / (b - a)
+        guess = np.zeros(search.size(odd))
+        for k, weight in ((i, 1 - f), (i + 1, f)):
+            n = unknowns(pb, track.Hs[k], odd)
+            guess[:n] += weight * track.ys[k, :n]
+        goal = _FINE_GOAL if search.harmonics is None else np.inf
+        H = int(max(track.Hs[i], track.Hs[i + 1]))
+        ok, H, _ = solve_at(pb, odd, W, guess, H, search.highest, goal, 15)
+        if ok:
+            out.append((guess, H))
+    return out
+
+
+def _mirrored(search: Search, X: Floats, H: int) -> Floats:
+    """The other one of a pair of asymmetric responses: even harmonics change their sign."""
+    r = search.problem.M11.shape[0]
+    n = unknowns(search.problem, H, False)
+    other = X.copy()
+    other[:n].reshape(-1, 2 * r)[::2] *= -1
+    return other
+
+
+def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> PeriodicResponse:
+    pb, n = search.problem, search.system.size
+    u = np.empty((H + 5, pb.M11.shape[0]), complex)
+    harmonics_of(pb, H, odd, X, u)
+    ks = range(1, H + 1, 2) if odd else range(H + 1)
+    rows = {k: np.array([output_harmonic(pb, k, W, u[k], row) for row in range(2 + n)]) for k in ks}
+    Phi = np.empty((2 * n, 2 * n))
+    monodromy(pb, variation_of(search.system), H, odd, W, u, Phi)
+    values = np.linalg.eigvals(Phi).astype(complex)
+    multipliers = values**2 if odd else values
+    multipliers = multipliers[np.argsort(-np.abs(multipliers))]
+    peaks = []
+    for row in range(2):
+        series = np.zeros(H + 1, complex)
+        for k in ks:
+            series[k] = rows[k][row]
+        peaks.append(float(peak_of(series, H, odd)))
+    check = X.copy()
+    _, _, truncation = solve_at(pb, odd, W, check, H, H, np.inf, 3)
+    return PeriodicResponse(
+        frequency=W,
+        harmonics={k: frozen(values[2:], complex) for k, values in rows.items()},
+        multipliers=frozen(multipliers, complex),
+        stable=bool(np.all(np.abs(multipliers) < 1)),
+        pipe_peak=peaks[0],
+        relative_peak=peaks[1],
+        pipe_amplitude=float(abs(rows[1][0])),
+        relative_amplitude=float(abs(rows[1][1])),
+        residual=float(truncation),
+        symmetric=odd,
+    )
+
+
+def _same(a: PeriodicResponse, b: PeriodicResponse) -> bool:
+    return bool(np.allclose(a.state, b.state, rtol=1e-6, atol=1e-9 * max(a.relative_peak, 1e-300)))
+
+
+def _linear(system: System, W: float) -> PeriodicResponse:
+    """The only response of a linear or unforced system (its rest, where nothing drives it)."""
+    X = linear_response(system, np.array([W]))[0]
+    multipliers = np.exp(linear_exponents(system) * 2 * np.pi / W)
+    first = system.elements[0].direction if system.elements else np.zeros(system.size)
+    pipe, relative = float(abs(system.output @ X)), float(abs(first @ X))
+    order = np.argsort(-np.abs(multipliers))
+    return PeriodicResponse(
+        frequency=W,
+        harmonics={1: frozen(X, complex)},
+        multipliers=frozen(multipliers[order], complex),
+        stable=bool(np.all(np.abs(multipliers) < 1)),
+        pipe_peak=pipe,
+        relative_peak=relative,
+        pipe_amplitude=pipe,
+        relative_amplitude=relative,
+        residual=0.0,
+        symmetric=True,
+    )

@@ -1,0 +1,110 @@
+"""Response curve of the exact equations by harmonic balance."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from frahm.arrays import Floats
+from frahm.harmonic_balance import Track, begin, find_branches, is_linear, linear_growth, linear_response
+from frahm.response.curve import ResponseCurve, SpecialPoint
+from frahm.systems import System, detuning_of
+
+_LINEAR_POINTS = 2001
+_ENDED_WELL = (0, 1)
+
+
+def exact_curve(system: System, lo: float, hi: float, harmonics: int | None) -> ResponseCurve:
+    """All branches of periodic responses of the exact equations over Omega in [lo, hi] [rad/s]."""
+    settings: dict[str, Any] = {
+        "method": "harmonic-balance",
+        "harmonics": "auto" if harmonics is None else harmonics,
+        "frequency_window": (lo, hi),
+    }
+    if is_linear(system) or not np.any(system.forcing):
+        return _linear_curve(system, lo, hi, settings)
+    search = begin(system, lo, hi, harmonics)
+    tracks = find_branches(search)
+    settings["inventory"] = inventory_text(search.problem.directions.shape[1], search.problem.degree)
+    return _assembled(system, tracks, settings)
+
+
+def inventory_text(elements: int, degree: int) -> str:
+    """What the search for branches proves and what it only searches."""
+    if elements == 1 and degree > 0:
+        start = "all first-harmonic roots, with every free third harmonic beside them, at spread frequencies and inside"
+        start += " every range with several roots"
+    else:
+        start = "first-harmonic solutions searched from a fixed spread of starts (not proven complete)"
+    return (
+        f"Branches were followed from {start}. Not searched: responses whose period is a multiple of the excitation's"
+        " (period doublings are located, the doubled motions not followed), and responses without any first-harmonic"
+        " counterpart."
+    )
+
+
+def _assembled(system: System, tracks: list[Track], settings: dict[str, Any]) -> ResponseCurve:
+    special, doubtful = [], []
+    for number, track in enumerate(tracks):
+        for event in track.events:
+            W, _, _, pipe, relative = (float(value) for value in event.columns)
+            sigma = float(detuning_of(system, W))
+            status = "located" if event.located else "unverified"
+            interval = (W - event.half_width, W + event.half_width)
+            special.append(SpecialPoint(event.kind, W, sigma, pipe, relative, number, interval, status))
+            if not event.located:
+                doubtful.append(f"A {event.kind} near {W:.6g} rad/s was seen but not located.")
+        if any(ending not in _ENDED_WELL for ending in track.endings):
+            where = ", ".join(f"{track.frequency[i]:.6g}" for i in (0, -1))
+            doubtful.append(f"Branch {number} could not be followed to its end; it stops near {where} rad/s.")
+    columns = np.concatenate([track.columns for track in tracks]) if tracks else np.empty((0, 5))
+    growth = np.concatenate([_growth(track) for track in tracks]) if tracks else np.empty(0)
+    if not tracks:
+        doubtful.append("No periodic response was found: Newton's method failed from every seed.")
+    return ResponseCurve(
+        frequency=columns[:, 0],
+        detuning=detuning_of(system, columns[:, 0]),
+        pipe_amplitude=columns[:, 1],
+        relative_amplitude=columns[:, 2],
+        pipe_peak=columns[:, 3],
+        relative_peak=columns[:, 4],
+        branch=np.repeat(np.arange(len(tracks)), [len(track.Hs) for track in tracks]),
+        piece=np.concatenate([track.pieces for track in tracks]) if tracks else np.empty(0, int),
+        stable=growth < 0,
+        growth_rate=growth,
+        detached=tuple(_is_detached(track, tracks) for track in tracks),
+        special_points=tuple(sorted(special, key=lambda p: p.frequency)),
+        unverified=tuple(doubtful),
+        settings=settings,
+        system=system.name,
+    )
+
+
+def _is_detached(track: Track, tracks: list[Track]) -> bool:
+    """Whether a branch has no connection with branch 0, directly or through a loss of symmetry."""
+    while track.parent is not None:
+        track = track.parent
+    return track is not tracks[0]
+
+
+def _growth(track: Track) -> Floats:
+    """Largest growth rate [1/s] from the multipliers of the map over half a period or a whole one."""
+    span = (math.pi if track.odd else 2 * math.pi) / track.frequency
+    return np.asarray(np.log(np.max(np.abs(track.multipliers), axis=1)) / span)
+
+
+def _linear_curve(system: System, lo: float, hi: float, settings: dict[str, Any]) -> ResponseCurve:
+    inside = system.natural_frequencies[(system.natural_frequencies > lo) & (system.natural_frequencies < hi)]
+    W = np.unique(np.concatenate([np.linspace(lo, hi, _LINEAR_POINTS), inside]))
+    X = linear_response(system, W)
+    first = system.elements[0].direction if system.elements else np.zeros(system.size)
+    pipe, relative = np.abs(X @ system.output), np.abs(X @ first)
+    growth = np.full(W.size, linear_growth(system))
+    none = np.zeros(W.size, int)
+    settings["inventory"] = "A linear system has one periodic response at every frequency."
+    return ResponseCurve(
+        W, detuning_of(system, W), pipe, relative, pipe, relative, none, none, growth < 0, growth,
+        (False,), (), (), settings, system.name,
+    )  # fmt: skip
