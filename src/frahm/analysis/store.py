@@ -80,12 +80,14 @@ def joined(data: dict[str, xr.Dataset]) -> xr.Dataset:
     """All datasets as one: the name of each is put before its variables, dimensions and attributes."""
     import xarray as xr
 
-    parts, attributes = [], {"sections": ", ".join(data)}
+    variables: dict[Any, Any] = {}
+    attributes: dict[str, Any] = {"sections": ", ".join(data)}
     for section, dataset in data.items():
-        plain = dataset.reset_coords()
-        parts.append(plain.rename({name: f"{section}.{name}" for name in {*plain.variables, *plain.dims}}))
-        attributes |= {f"{section}.{name}": value for name, value in dataset.attrs.items()}
-    return xr.merge(parts, combine_attrs="drop", join="exact").assign_attrs(attributes)
+        bare = dataset.reset_coords()
+        named = bare.rename({name: f"{section}.{name}" for name in {*bare.variables, *bare.dims}})
+        variables |= named.variables
+        attributes |= {f"{section}.{key}": value for key, value in dataset.attrs.items()}
+    return xr.Dataset(variables, attrs=attributes)
 
 
 def separated(whole: xr.Dataset) -> dict[str, xr.Dataset]:
