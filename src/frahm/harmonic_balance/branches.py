@@ -122,10 +122,10 @@ def begin(system: System, lo: float, hi: float, harmonics: int | None) -> Search
 
 
 def _strongest(pb: Problem, scale: float, hi: float) -> tuple[float, float]:
-    """Bound of the elements' slopes [N/m] at twice the largest amplitude expected, and the harmonic that matters."""
-    z = 2.0 * scale * np.linspace(-1.0, 1.0, 201)
+    """Largest slope of the elements [N/m] at the largest amplitude expected, and the frequency [rad/s]."""
+    z = scale * np.linspace(-1.0, 1.0, 201)
     slopes = [law_force_and_slopes(*row, pb.table, value, 0.0)[1] for row in pb.codes for value in z]
-    return float(np.max(np.abs(slopes))), 7.0 * hi
+    return float(np.max(np.abs(slopes))), hi
 
 
 def _seeds_at(pb: Problem, W: float, e: Floats | None, scale: float, odd: bool, first_only: bool = False) -> list[Seed]:

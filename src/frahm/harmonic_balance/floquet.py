@@ -18,6 +18,7 @@ from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Floats
 from frahm.compiled import kernel
 from frahm.harmonic_balance.condensation import linear_part
+from frahm.harmonic_balance.hill import refine_exponents
 from frahm.polynomials import quadratic_factors
 from frahm.systems import System
 
@@ -45,17 +46,17 @@ class Variation(NamedTuple):
     hardest: Floats  # (E,): stiffness of an element to frequency squared
 
 
-def variation_of(system: System, steepest: float = math.inf, turn: float = math.inf) -> Variation:
+def variation_of(system: System, steepest: float = math.inf, frequency: float = math.inf) -> Variation:
     """Variational equation of a system; elements with linear laws belong to C and K.
 
     Parameters
     ----------
     system : System
     steepest : float
-        Largest slope p_e [N/m] that will occur. Modes that such a slope can neither excite parametrically against
-        their damping nor drag along by more than 1e-7 are replaced by their static flexibility; infinite: none are.
-    turn : float
-        Frequency [rad/s] of the highest harmonic that matters.
+        Largest slope p_e [N/m] expected. Fast modes that such a slope cannot excite parametrically against their
+        damping are replaced by their static flexibility (`_lively`); infinite: none are.
+    frequency : float
+        Omega [rad/s].
     """
     C, K = linear_part(system)
     active = [element.direction for element in system.elements if not element.law.is_linear]
@@ -66,17 +67,21 @@ def variation_of(system: System, steepest: float = math.inf, turn: float = math.
     squares, modes = scipy.linalg.eigh(K, system.mass)
     squares = np.maximum(squares, 0.0)
     damping, feel = modes.T @ C @ modes, N.T @ modes
-    keep = _lively(np.sqrt(squares), np.diag(damping), np.sum(feel**2, axis=0), steepest, turn)
+    keep = _lively(np.sqrt(squares), np.diag(damping), np.sum(feel**2, axis=0), steepest, frequency)
     rest = feel[:, ~keep] / squares[~keep] @ feel[:, ~keep].T if np.any(~keep) else np.zeros((len(feel), len(feel)))
     return _variation(np.diag(squares[keep]), damping[np.ix_(keep, keep)], feel[:, keep].T, feel[:, keep], rest)
 
 
-def _lively(omega: Floats, damping: Floats, coupling: Floats, steepest: float, turn: float) -> np.ndarray:
-    """Which modes must be kept: slow ones, and those a slope could excite or drag along noticeably."""
+def _lively(omega: Floats, damping: Floats, coupling: Floats, steepest: float, frequency: float) -> np.ndarray:
+    """Which modes take part in the motion: slow ones, and those the slope's harmonics could excite.
+
+    Harmonic m of the slope is taken to fall off as 0.3^(m/2 - 1); mode j can be excited in combination with a slow one
+    by m = omega_j/Omega - 1 and above, at the rate steepest coupling/(2 omega_j), against half its damping.
+    """
+    m = np.maximum(omega / frequency - 1.0, 2.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        excited = steepest * coupling / (2 * omega) > 0.1 * damping
-        dragged = steepest * coupling / omega**2 * (turn / omega) ** 2 > 1e-7
-    return np.asarray(excited | dragged | (omega < 2 * turn))
+        rate = steepest * 0.3 ** (m / 2 - 1) * coupling / (2 * omega)
+    return np.asarray((omega < 3 * frequency) | ~(rate < 0.1 * damping))
 
 
 def _variation(K: Floats, C: Floats, push: Floats, feel: Floats, flexibility: Floats) -> Variation:
@@ -113,17 +118,26 @@ def monodromy(pb, va, H, odd, W, u, Phi):
     for i in range(m):
         Phi[i, i] = 1.0
     X, V, Z = np.zeros((_ORDER + 1, n, _LANES)), np.zeros((_ORDER + 1, n, _LANES)), np.zeros((_ORDER + 1, E, _LANES))
-    values, p = np.empty(_NODES), np.empty((E, _NODES))
+    slopes, values, p = np.zeros((E, E)), np.empty((E, E, _NODES)), np.empty((E, E, _NODES))
+    soft = np.any(va.flexibility != 0.0)
     for step in range(steps):
+        for j in range(_NODES):
+            tau = W * h * (step + _POINTS[j])
+            for e in range(E):
+                z = element_displacement(pb, e, H, odd, u, tau)
+                code = pb.codes[e]
+                _, slopes[e, e], _ = law_force_and_slopes(code[0], code[1], code[2], pb.table, z, 0.0)
+            felt = _behind(slopes, va.flexibility) if soft else slopes
+            for e in range(E):
+                for f in range(E):
+                    values[e, f, j] = felt[e, f]
         for e in range(E):
-            for j in range(_NODES):
-                z = element_displacement(pb, e, H, odd, u, W * h * (step + _POINTS[j]))
-                _, values[j], _ = law_force_and_slopes(pb.codes[e, 0], pb.codes[e, 1], pb.codes[e, 2], pb.table, z, 0.0)
-            for i in range(_NODES):
-                total = 0.0
-                for j in range(_NODES):
-                    total += _TO_POWERS[i, j] * values[j]
-                p[e, i] = total
+            for f in range(E):
+                for i in range(_NODES):
+                    total = 0.0
+                    for j in range(_NODES):
+                        total += _TO_POWERS[i, j] * values[e, f, j]
+                    p[e, f, i] = total
         for start in range(0, m, _LANES):  # a few columns at a time, so that they fill a vector register
             width = min(_LANES, m - start)
             for i in range(n):
@@ -231,9 +245,11 @@ def _taylor_step(va, p, h, X, V, Z):
 @kernel
 def shifted_eigenvalues(B, out):
     """Eigenvalues of the real matrix B into out: closed form for 4 x 4, LAPACK otherwise."""
-    m = B.shape[0]
-    if m != 4:
+    if B.shape[0] != 4:
         out[:] = np.linalg.eigvals(B.astype(np.complex128))
+        for i in range(out.size):
+            if abs(out[i].imag) < 1e-13 * (1.0 + abs(out[i].real)):
+                out[i] = complex(out[i].real, 0.0)
         return
     # Faddeev-LeVerrier
     A = B.copy()
@@ -279,7 +295,15 @@ def map_multipliers(pb, va, H, odd, W, u, out):
     shifted_eigenvalues(Phi, out)
     for i in range(m):
         out[i] += 1.0
-    for i in range(1, m):
+    _sort_by_modulus(out)
+    if np.any(va.flexibility != 0.0):
+        refine_exponents(pb, H, odd, W, u, out, 2)
+        _sort_by_modulus(out)
+
+
+@kernel
+def _sort_by_modulus(out):
+    for i in range(1, out.size):
         value = out[i]
         j = i - 1
         while j >= 0 and abs(out[j]) < abs(value):

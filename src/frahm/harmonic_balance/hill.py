@@ -1,0 +1,93 @@
+"""One Floquet exponent at a time, exactly, for hosts with many modes: Hill's determinant on the relative coordinates.
+
+A disturbance e^{lam t} sum_k v_k e^{ik Omega t} of the elements' coordinates obeys, with P_m the Fourier coefficients
+of the elements' slopes, S(lam + ik Omega) v_k + sum_l P_{k-l} v_l = 0, S being the dynamic stiffness of the whole host.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+
+from frahm.compiled import kernel
+from frahm.harmonic_balance.kernels import element_force, fourier_tables, sample_count, stiffness
+
+
+@kernel
+def refine_exponents(pb, H, odd, W, u, multipliers, count):
+    """Replace the `count` largest multipliers of the (half) map by those of the complete host, in place.
+
+    Each is the start of an inverse iteration with Rayleigh quotients on Hill's matrix; where that leads elsewhere or
+    does not converge the value is kept.
+    """
+    r, E = pb.M11.shape[0], pb.directions.shape[1]
+    step = 2 if odd else 1
+    h = H + 2 if odd else H + 1
+    harmonics = h + 1 if odd else 2 * h + 1
+    n = harmonics * r
+    co, si = fourier_tables(H, odd, sample_count(pb, H, odd))
+    G, p = np.empty(H + 5, np.complex128), np.empty(2 * H + 1, np.complex128)
+    P = np.zeros((n, n), np.complex128)
+    for e in range(E):
+        element_force(pb, e, H, odd, u, co, si, G, p)
+        for a in range(harmonics):
+            for b in range(harmonics):
+                m = (a - b) * step
+                if abs(m) > 2 * H:
+                    continue
+                value = p[m] if m >= 0 else p[-m].conjugate()
+                for i in range(r):
+                    for j in range(r):
+                        P[a * r + i, b * r + j] += pb.directions[i, e] * pb.directions[j, e] * value
+    span = (math.pi if odd else 2.0 * math.pi) / W
+    A, D = np.empty((n, n), np.complex128), np.zeros((n, n), np.complex128)
+    S, dS = np.empty((r, r), np.complex128), np.empty((r, r), np.complex128)
+    force, dforce = np.empty(r, np.complex128), np.empty(r, np.complex128)
+    for index in range(count):
+        if multipliers[index].imag < 0.0:
+            continue  # the conjugate of one refined before or after
+        start = cmath.log(multipliers[index]) / span
+        lam, v, w = start, np.ones(n, np.complex128), np.ones(n, np.complex128)
+        for i in range(n):  # a start that no symmetry makes orthogonal to the vector sought
+            v[i] += 0.3 * math.sin(1.0 + i)
+            w[i] += 0.3 * math.cos(1.0 + i)
+        good = False
+        for iteration in range(12):
+            A[:] = P
+            for a in range(harmonics):
+                k = (a * step) - h
+                stiffness(pb, lam + 1j * k * W, S, dS, force, dforce)
+                for i in range(r):
+                    for j in range(r):
+                        A[a * r + i, a * r + j] += S[i, j]
+                        D[a * r + i, a * r + j] = dS[i, j]
+            if iteration > 0:
+                bottom = np.sum(w * (D @ v))
+                if bottom == 0j:
+                    break
+                change = np.sum(w * (A @ v)) / bottom
+                lam -= change
+                if abs(change) < 1e-10 * W:  # above what rounding leaves
+                    good = True
+                    break
+                for a in range(harmonics):
+                    k = (a * step) - h
+                    stiffness(pb, lam + 1j * k * W, S, dS, force, dforce)
+                    for i in range(r):
+                        for j in range(r):
+                            A[a * r + i, a * r + j] = P[a * r + i, a * r + j] + S[i, j]
+            v = np.linalg.solve(A, D @ v if iteration > 0 else v)
+            w = np.linalg.solve(A.T.copy(), D.T @ w if iteration > 0 else w)
+            v /= np.max(np.abs(v))
+            w /= np.max(np.abs(w))
+        if good and abs(lam - start) < 0.02 * W:
+            old = multipliers[index]
+            value = cmath.exp(lam * span)
+            if old.imag == 0.0:
+                value = complex(value.real, 0.0)
+            multipliers[index] = value
+            for other in range(multipliers.size):
+                if old.imag != 0.0 and abs(multipliers[other] - old.conjugate()) < 1e-9:
+                    multipliers[other] = value.conjugate()
