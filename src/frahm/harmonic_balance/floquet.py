@@ -248,7 +248,7 @@ def shifted_eigenvalues(B, out):
     if B.shape[0] != 4:
         out[:] = np.linalg.eigvals(B.astype(np.complex128))
         for i in range(out.size):
-            if abs(out[i].imag) < 1e-13 * (1.0 + abs(out[i].real)):
+            if abs(out[i].imag) < 1e-10 * (1.0 + abs(out[i].real)):  # the complex solver's rounding
                 out[i] = complex(out[i].real, 0.0)
         return
     # Faddeev-LeVerrier

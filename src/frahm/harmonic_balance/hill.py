@@ -89,5 +89,5 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
                 value = complex(value.real, 0.0)
             multipliers[index] = value
             for other in range(multipliers.size):
-                if old.imag != 0.0 and abs(multipliers[other] - old.conjugate()) < 1e-9:
+                if old.imag != 0.0 and abs(multipliers[other] - old.conjugate()) < 1e-6:
                     multipliers[other] = value.conjugate()
