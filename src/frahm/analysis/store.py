@@ -127,5 +127,5 @@ def _read_arrays(path: Path) -> dict[str, xr.Dataset]:
         with xr.open_dataset(path, engine="h5netcdf") as opened:
             return separated(opened.load())
     except (OSError, KeyError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "it is damaged or not a results file"
+        reason = getattr(error, "strerror", None) or "It is damaged or not a results file"
         raise ParameterError("DIR", str(path.parent), f"a folder with {path.name} in it", hint=f"{reason}.") from None
