@@ -143,9 +143,10 @@ def _add_special_points(figure: go.Figure, curve: xr.Dataset, quantity: str) -> 
     marks = special_marks(curve, quantity)
     for kind in dict.fromkeys(mark.kind for mark in marks):
         chosen = [mark for mark in marks if mark.kind == kind]
+        height = "bottom" if kind == "saddle-node" else "top"
         figure.add_scatter(
             x=[m.x for m in chosen], y=[m.y for m in chosen], text=[m.label for m in chosen], mode="markers+text",
-            textposition="bottom center" if kind == "saddle-node" else "top center", name=KIND_NAMES[kind],
+            textposition=[f"{height} {'right' if m.x > 0 else 'left'}" for m in chosen], name=KIND_NAMES[kind],
             marker={"symbol": _SYMBOLS[kind], "size": 9, "color": INK},
         )  # fmt: skip
 

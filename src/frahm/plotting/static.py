@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.patheffects import withStroke
 
 from frahm.plotting.lines import KIND_NAMES, largest_finite, response_lines, special_marks, thinned
 from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK, UNSTABLE_DASHES, new_figure
@@ -43,10 +44,10 @@ def response_figure(
     for mark in special_marks(curve, quantity):
         label = "_" if mark.label[-1] != "1" else KIND_NAMES[mark.kind]
         axes.plot(mark.x, mark.y, MARKERS[mark.kind], color=INK, markersize=5, linestyle="none", label=label)
-        below = mark.kind == "saddle-node"
+        right = mark.x > 0  # labels stand outside, the motions at resonance inside
         axes.annotate(
-            mark.label, (mark.x, mark.y), (0, -7 if below else 6), textcoords="offset points", ha="center",
-            va="top" if below else "bottom", fontsize=8,
+            mark.label, (mark.x, mark.y), (7 if right else -6, -3 if mark.kind == "saddle-node" else 6), textcoords="offset points", va="center",
+            ha="left" if right else "right", fontsize=8, path_effects=[withStroke(linewidth=1.5, foreground="white")],
         )  # fmt: skip
     top = largest_finite(curve[quantity].values)
     for motion in motions or []:
