@@ -45,9 +45,10 @@ def response_figure(
         label = "_" if mark.label[-1] != "1" else KIND_NAMES[mark.kind]
         axes.plot(mark.x, mark.y, MARKERS[mark.kind], color=INK, markersize=5, linestyle="none", label=label)
         right = mark.x > 0  # labels stand outside, the motions at resonance inside
+        offset = (7 if right else -6, -3 if mark.kind == "saddle-node" else 6)
         axes.annotate(
-            mark.label, (mark.x, mark.y), (7 if right else -6, -3 if mark.kind == "saddle-node" else 6), textcoords="offset points", va="center",
-            ha="left" if right else "right", fontsize=8, path_effects=[withStroke(linewidth=1.5, foreground="white")],
+            mark.label, (mark.x, mark.y), offset, textcoords="offset points", va="center", fontsize=8,
+            ha="left" if right else "right", path_effects=[withStroke(linewidth=1.5, foreground="white")],
         )  # fmt: skip
     top = largest_finite(curve[quantity].values)
     for motion in motions or []:
