@@ -27,7 +27,7 @@ def response(work: Work) -> Section:
         data={"response": curve.to_dataset()},
         checks=(_located(curve),),
         unverified=curve.unverified,
-        notes=("The slow flow keeps one harmonic: its amplitudes are approximations, tested below by integration.",),
+        notes=("The slow flow keeps one harmonic: its amplitudes are approximations, tested by integration.",),
     )
 
 

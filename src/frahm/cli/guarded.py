@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import enum
+import signal
+import threading
+from collections.abc import Iterator
 from typing import Any
 
 import typer
@@ -18,6 +22,22 @@ class ExitCode(enum.IntEnum):
     BAD_INPUT = 2
     UNVERIFIED = 3
     INTERRUPTED = 130
+
+
+@contextlib.contextmanager
+def held_interrupts() -> Iterator[None]:
+    """An interruption inside this block comes at its end: libraries stopped half imported raise errors of their own."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    asked = threading.Event()
+    before = signal.signal(signal.SIGINT, lambda *_: asked.set())
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if asked.is_set():
+        raise KeyboardInterrupt
 
 
 class GuardedGroup(TyperGroup):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from frahm.cli.cases import CaseArgument
-from frahm.cli.guarded import ExitCode
+from frahm.cli.guarded import ExitCode, held_interrupts
 
 if TYPE_CHECKING:
     from frahm.analysis import Analysis
@@ -31,13 +31,15 @@ def run(
     claim_folder(folder, loaded, force=force)
     with shown_progress() as progress:
         progress("loading", 0, 1)
-        from frahm.analysis import analyse, save_analysis
+        with held_interrupts():
+            import xarray  # noqa: F401 - the steps need it: imported here, where nothing can stop it half-way
+
+            from frahm.analysis import analyse, save_analysis
+            from frahm.report import write_report
 
         analysis = analyse(loaded, progress=progress)
         save_analysis(analysis, folder)
         if not analysis.interrupted:
-            from frahm.report import write_report
-
             progress("figures and report", 0, 1)
             write_report(analysis, folder)
     _conclude(analysis, folder)
