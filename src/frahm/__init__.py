@@ -28,6 +28,8 @@ _PUBLIC = {
     "PeriodicResponse": "frahm.harmonic_balance",
     "slow_flow_map": "frahm.response",
     "stability_boundaries": "frahm.response",
+    "bifurcation_curve": "frahm.response",
+    "detached_curve_events": "frahm.response",
 }
 
 __all__ = ["__version__", *_PUBLIC]

@@ -60,3 +60,13 @@ def law_force_and_slopes(kind, start, count, table, z, w):
         slope = slope * z + spring
     damping = parameter(table, start, z)
     return spring * z + damping * w, slope, damping
+
+
+@kernel
+def law_curvature(kind, start, count, table, z):
+    """Second derivative d2g/dz2 [N/m^2] of the law with the codes (kind, start, count) at displacement z [m]."""
+    value = 0.0
+    for k in range(count - 1):  # the table holds c_count first
+        power = count - k
+        value = value * z + power * (power - 1) * table[start + 1 + k]
+    return value

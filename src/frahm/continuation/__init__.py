@@ -1,5 +1,12 @@
-"""Room `continuation`: follows residual(x, p) = 0 and locates zero curves; knows no physics."""
+"""Room `continuation`: follows residual(y) = 0 and locates points and zero curves; knows no physics."""
 
 from frahm.continuation.contours import zero_curves
+from frahm.continuation.pseudo_arclength import (
+    ContinuationSettings,
+    CurvePoint,
+    between_points,
+    follow_curve,
+    newton,
+)
 
-__all__ = ["zero_curves"]
+__all__ = ["ContinuationSettings", "CurvePoint", "between_points", "follow_curve", "newton", "zero_curves"]

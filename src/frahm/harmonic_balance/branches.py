@@ -154,8 +154,11 @@ def seed_frequencies(search: Search) -> Floats:
     return np.unique(np.concatenate([spread, middles, grid[almost]]))
 
 
-def find_branches(search: Search) -> list[Track]:
-    """Every branch the seeds lead to, each followed once; the one with the smallest response at `lo` comes first."""
+def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
+    """Every branch the seeds lead to, each followed once; the one with the smallest response at `lo` comes first.
+
+    Branches with even harmonics that leave odd ones are followed only if `asymmetric`.
+    """
     pb = search.problem
     e = spring_polynomial(pb)
     odd = pb.odd
@@ -169,7 +172,7 @@ def find_branches(search: Search) -> list[Track]:
                 continue
             tracks.append(_followed(search, odd, *start))
     tracks = [track for track in tracks if complete(search, track)]
-    for track in list(tracks):
+    for track in list(tracks) if asymmetric else []:
         tracks += asymmetric_branches(search, track, tracks)
     return sorted(tracks, key=lambda track: _response_at(track, search.lo))
 

@@ -20,7 +20,7 @@ from frahm.absorbers import Polynomial
 from frahm.absorbers.packed import pack_laws
 from frahm.arrays import Complexes, Floats
 from frahm.errors import ParameterError
-from frahm.systems import System
+from frahm.systems import Derivative, System
 
 
 class Problem(NamedTuple):
@@ -61,11 +61,8 @@ def condense(system: System) -> Problem:
     """
     C, K = linear_part(system)
     active = [element for element in system.elements if not element.law.is_linear]
-    N = np.column_stack([element.direction for element in active])
-    P, directions = _relative_coordinates(N)
-    r = P.shape[1]
-    Q = scipy.linalg.null_space(N.T)
-    T = np.column_stack([P, Q])
+    T, directions = coordinates(system)
+    r = directions.shape[0]
     M_, C_, K_ = (np.ascontiguousarray(T.T @ matrix @ T) for matrix in (system.mass, C, K))
     blocks = (M_, C_, K_)
     f = T.T @ system.forcing
@@ -89,6 +86,42 @@ def condense(system: System) -> Problem:
         degree=max(law.coefficients.size for law in nonlinear),
         odd=all(law.is_odd for law in nonlinear),
     )  # fmt: skip
+
+
+def coordinates(system: System) -> tuple[Floats, Floats]:
+    """T (n, n) with x = T (u, y), and directions (r, E) with z_e = directions[:, e] . u."""
+    N = np.column_stack([element.direction for element in system.elements if not element.law.is_linear])
+    P, directions = _relative_coordinates(N)
+    return np.column_stack([P, scipy.linalg.null_space(N.T)]), directions
+
+
+class CondensedChange:
+    """Derivatives of the condensed stiffness and force by a parameter of a system."""
+
+    def __init__(self, system: System, change: Derivative, T: Floats, r: int):
+        C, K = linear_part(system)
+        self.r = r
+        self.now = [T.T @ matrix @ T for matrix in (system.mass, C, K)]
+        self.change = [T.T @ matrix @ T for matrix in (change.mass, change.damping, change.stiffness)]
+        self.force, self.dforce = T.T @ system.forcing, T.T @ change.forcing
+
+    def at(self, s: complex) -> tuple[Complexes, Complexes]:
+        """DS (r, r) and dF (r,) at the complex frequency s.
+
+        With X = D22^-1 D21 and Y = D12 D22^-1, dS = dD11 - Y dD21 - dD12 X + Y dD22 X.
+        """
+        s = complex(s)
+        D, dD = (np.asarray(M * s * s + C * s + K, dtype=complex) for M, C, K in (self.now, self.change))
+        return _condensed_derivative(D, dD, self.force, self.dforce, self.r)
+
+
+def _condensed_derivative(D: Complexes, dD: Complexes, f: Floats, df: Floats, r: int) -> tuple[Complexes, Complexes]:
+    X = np.linalg.solve(D[r:, r:], np.column_stack([D[r:, :r], f[r:]]))
+    X, rest = X[:, :r], X[:, r]
+    Y = np.linalg.solve(D[r:, r:].T, D[:r, r:].T).T
+    dS = dD[:r, :r] - Y @ dD[r:, :r] - dD[:r, r:] @ X + Y @ dD[r:, r:] @ X
+    dF = df[:r] - (dD[:r, r:] - Y @ dD[r:, r:]) @ rest - Y @ df[r:]
+    return dS, dF
 
 
 def linear_part(system: System) -> tuple[Floats, Floats]:

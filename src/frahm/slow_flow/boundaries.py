@@ -99,7 +99,7 @@ def boundary_curves(
 def _check_plane(slow: SlowFlow, plane: tuple[str, str], bounds: tuple[tuple[float, float], ...]) -> None:
     allowed = "two different names out of " + ", ".join(AXES)
     unknown = [str(axis) for axis in plane if axis not in AXES]
-    if len(plane) != 2 or plane[0] == plane[1]:
+    if len(set(plane)) != 2:
         raise ParameterError("plane", plane, allowed)
     for axis in unknown:
         near = nearest(axis, AXES)

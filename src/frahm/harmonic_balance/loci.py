@@ -1,0 +1,432 @@
+"""Curves of saddle-node and Neimark-Sacker points in two parameters; births and merges of detached curves on them."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from frahm.arrays import Complexes, Floats
+from frahm.continuation import ContinuationSettings, CurvePoint, between_points, follow_curve, newton
+from frahm.errors import Outcome
+from frahm.harmonic_balance.branches import LocatedEvent, Search, Track, begin, find_branches
+from frahm.harmonic_balance.condensation import Problem, condense
+from frahm.harmonic_balance.equations import FREQUENCY, Equations, FoldEquations, Orbit, TorusEquations
+from frahm.harmonic_balance.floquet import map_multipliers
+from frahm.harmonic_balance.kernels import harmonics_of, unknowns
+from frahm.harmonic_balance.orbits import output_series, peak_of
+from frahm.systems import System, parameter_value, with_parameters
+
+_SETTINGS = ContinuationSettings(first_step=5e-3, longest_step=0.06, angle=0.2, tolerance=1e-9, most_points=1500)
+_MOST_HARMONICS = 61
+_GOAL = 1e-6
+
+
+@dataclass(frozen=True)
+class Locus:
+    """One connected curve of special points.
+
+    Attributes
+    ----------
+    kind : str
+        "saddle-node" or "neimark-sacker".
+    values : ndarray, shape (points, 2)
+        Both axes.
+    frequency, pipe_peak, relative_peak : ndarray, shape (points,)
+        Omega [rad/s] and the peaks of the orbit [m].
+    marks : tuple of (index, str)
+        Points of codimension two on the curve: "cusp", "1:1 resonance", "1:2 resonance".
+    outcomes : tuple of Outcome
+        How both ends ended.
+    """
+
+    kind: str
+    values: Floats
+    frequency: Floats
+    pipe_peak: Floats
+    relative_peak: Floats
+    marks: tuple[tuple[int, str], ...]
+    outcomes: tuple[Outcome, ...]
+
+
+@dataclass(frozen=True)
+class DetachedCurveEvent:
+    """A detached response curve is born, or merges with another one, as a parameter passes a value.
+
+    Attributes
+    ----------
+    kind : str
+        "birth": the curve appears out of a point; "merge": it touches another curve.
+    parameter : str
+        Name of the parameter.
+    value, frequency : float
+        Value of the parameter and Omega [rad/s] at the event.
+    pipe_peak, relative_peak : float
+        Peaks of the response there [m].
+    direction : int
+        +1 if the pair of saddle-nodes that meets here exists above the value, -1 if below.
+    """
+
+    kind: str
+    parameter: str
+    value: float
+    frequency: float
+    pipe_peak: float
+    relative_peak: float
+    direction: int
+
+
+@dataclass(frozen=True)
+class _Start:
+    """A located special point: its slice, its orbit and the tracks' scales."""
+
+    search: Search
+    track: Track
+    event: LocatedEvent
+    point: tuple[Floats, Floats, int]
+    slice_value: float
+
+
+def loci_with_frequency(
+    system: System, kind: str, parameter: str, window: tuple[float, float], bounds: tuple[float, float], slices: int
+) -> tuple[list[Locus], list[tuple[Equations, list[CurvePoint]]]]:
+    """Curves of one kind in the plane (Omega, parameter): those that cross one of several slices of the plane.
+
+    Every slice is the complete response curve at one value of the parameter; all its special points of that kind are
+    followed in both directions to the edge of the plane.
+    """
+    loci: list[Locus] = []
+    traces: list[tuple[Equations, list[CurvePoint]]] = []
+    for value in _slice_values(system, parameter, bounds, slices):
+        for start in _starts(system, kind, parameter, window, value):
+            frequency, peak = float(start.event.columns[0]), float(start.event.columns[4])
+            if any(_lies_on(locus, frequency, value, peak, window, bounds) for locus in loci):
+                continue
+            found = _follow(system, start, kind, (FREQUENCY, parameter), (window, bounds), frequency)
+            if found is not None:
+                loci.append(found[0])
+                traces.append(found[1])
+    return loci, traces
+
+
+def loci_at_frequency(
+    system: System,
+    kind: str,
+    plane: tuple[str, str],
+    bounds: tuple[tuple[float, float], tuple[float, float]],
+    frequency: float,
+    slices: int,
+) -> list[Locus]:
+    """Curves of one kind in a plane of two parameters at fixed Omega.
+
+    They start where curves in the plane (Omega, first axis), followed at spread values of the second axis, cross the
+    frequency.
+    """
+    window = (0.85 * frequency, 1.15 * frequency)
+    loci: list[Locus] = []
+    for value in _slice_values(system, plane[1], bounds[1], slices):
+        changed = with_parameters(system, **{plane[1]: value})
+        _, traces = loci_with_frequency(changed, kind, plane[0], window, bounds[0], 3)
+        for equations, points in traces:
+            for start in _at_frequency(equations, points, frequency):
+                found = _from_point(changed, equations, start, kind, plane, bounds, frequency, value)
+                if found is not None and not any(_same_curve(found, other, bounds) for other in loci):
+                    loci.append(found)
+    return loci
+
+
+def detached_events(
+    system: System, parameter: str, window: tuple[float, float], bounds: tuple[float, float], slices: int
+) -> list[DetachedCurveEvent]:
+    """Births and merges of detached curves: extremes of the parameter along its saddle-node curves."""
+    _, traces = loci_with_frequency(system, "saddle-node", parameter, window, bounds, slices)
+    events: list[DetachedCurveEvent] = []
+    for equations, points in traces:
+        at = equations.n + 1
+        for a, b in itertools.pairwise(points):
+            cusp = a.tangent[at - 1] * b.tangent[at - 1] < 0  # both axes turn back: two saddle-nodes meet on one curve
+            if a.tangent[at] * b.tangent[at] >= 0 or a.tangent @ b.tangent < 0 or cusp:
+                continue
+            point = between_points(equations.residual, a, b, lambda p, at=at: float(p.tangent[at]), 1e-9)  # type: ignore[misc, attr-defined]
+            if point is None:
+                continue
+            event = _event(equations, point, parameter, 1 if a.tangent[at] < 0 else -1)
+            inside = bounds[0] <= event.value <= bounds[1] and window[0] <= event.frequency <= window[1]
+            if inside and not any(_same_event(event, other) for other in events):
+                events.append(event)
+    return sorted(events, key=lambda event: event.value)
+
+
+def _slice_values(system: System, parameter: str, bounds: tuple[float, float], slices: int) -> Floats:
+    lo, hi = bounds
+    values = np.geomspace(lo, hi, slices) if lo > 0 and hi / lo > 20 else np.linspace(lo, hi, slices)
+    now = parameter_value(system, parameter)
+    return np.unique(np.append(values[values > 0], [now] if lo <= now <= hi else []))
+
+
+def _starts(system: System, kind: str, parameter: str, window: tuple[float, float], value: float) -> list[_Start]:
+    search = begin(with_parameters(system, **{parameter: float(value)}), *window, None)
+    starts = []
+    for track in find_branches(search, asymmetric=kind != "saddle-node"):
+        for event, point in zip(track.events, track.event_points, strict=True):
+            if event.kind == kind and point is not None:
+                starts.append(_Start(search, track, event, point, float(value)))
+    return starts
+
+
+def _follow(
+    system: System,
+    start: _Start,
+    kind: str,
+    axes: tuple[str, str],
+    bounds: tuple[tuple[float, float], tuple[float, float]],
+    frequency: float,
+) -> tuple[Locus, tuple[Equations, list[CurvePoint]]] | None:
+    """Follow a curve from a located point in both directions, with more harmonics if it needs them."""
+    pb, odd = start.search.problem, start.track.odd
+    y, _, H0 = start.point
+    n0 = unknowns(pb, H0, odd)
+    scales = tuple(hi - lo for lo, hi in bounds)
+    given = [y[n0], start.slice_value]
+    H = H0 + 4
+    while True:
+        cls = FoldEquations if kind == "saddle-node" else TorusEquations
+        equations = cls(system, axes, frequency, H, odd, start.search.x_scale, scales)  # type: ignore[arg-type]
+        first = np.zeros(equations.n + (2 if kind == "saddle-node" else 3))
+        first[:n0] = y[:n0] / start.search.x_scale
+        first[equations.n : equations.n + 2] = [given[0] / scales[0], given[1] / scales[1]]
+        if kind != "saddle-node":
+            first[-1] = _angular_rate(start) / scales[0]
+        found = _both_ways(equations, first, bounds)
+        if found is None:
+            return None
+        points, outcomes = found
+        worst = max(equations.orbit(p.y).truncation for p in points[:: max(1, len(points) // 12)])
+        if worst < _GOAL or H + 8 > _MOST_HARMONICS:
+            return _locus(equations, points, kind, outcomes), (equations, points)
+        H += 8
+
+
+def _both_ways(
+    equations: Equations, first: Floats, bounds: tuple[tuple[float, float], tuple[float, float]]
+) -> tuple[list[CurvePoint], tuple[Outcome, ...]] | None:
+    n = equations.n
+    margin = 1e-9
+
+    def inside(y: Floats) -> bool:
+        values = equations.axis_values(y)
+        return all(lo - margin <= value <= hi + margin for value, (lo, hi) in zip(values, bounds, strict=True))
+
+    guide = np.zeros(first.size)
+    guide[n + 1] = 1.0
+    settled = newton(equations.residual, first, guide, 1e-9, 12)  # type: ignore[attr-defined]
+    if settled is None:
+        guide[n], guide[n + 1] = 1.0, 0.0
+        settled = newton(equations.residual, first, guide, 1e-9, 12)  # type: ignore[attr-defined]
+    if settled is None:
+        return None
+    parts, outcomes = [], []
+    for sign in (1.0, -1.0):
+        part: list[CurvePoint] = []
+        for item in follow_curve(equations.residual, settled.y, sign * settled.tangent, inside, _SETTINGS):  # type: ignore[attr-defined]
+            if isinstance(item, Outcome):
+                outcomes.append(item)
+            else:
+                part.append(item)
+        parts.append(part)
+        if outcomes[-1] is Outcome.CLOSED:
+            return part, tuple(outcomes)
+    backward = [CurvePoint(p.y, -p.tangent) for p in parts[1][:0:-1]]
+    points = backward + parts[0]
+    return (points, tuple(outcomes)) if len(points) > 2 else None
+
+
+def _angular_rate(start: _Start) -> float:
+    """Imaginary part nu [rad/s] of the critical exponent at a Neimark-Sacker point."""
+    pb, odd = start.search.problem, start.track.odd
+    y, _, H = start.point
+    W = y[unknowns(pb, H, odd)]
+    u = np.empty((H + 5, pb.M11.shape[0]), complex)
+    harmonics_of(pb, H, odd, y, u)
+    values = np.empty(2 * start.search.variation.K.shape[0], complex)
+    map_multipliers(pb, start.search.variation, H, odd, W, u, values)
+    pairs = values[values.imag > 1e-6]
+    critical = pairs[np.argmin(np.abs(np.log(np.abs(pairs))))]
+    return float(np.angle(critical) * W / (math.pi if odd else 2 * math.pi))
+
+
+def _locus(equations: Equations, points: list[CurvePoint], kind: str, outcomes: tuple[Outcome, ...]) -> Locus:
+    values = np.array([equations.axis_values(p.y) for p in points])
+    described = np.array([_peaks(equations, p.y) for p in points])
+    frequency = np.array([equations.frequency_at(p.y) for p in points])
+    return Locus(kind, values, frequency, described[:, 0], described[:, 1], _marks(equations, points, kind), outcomes)
+
+
+def _marks(equations: Equations, points: list[CurvePoint], kind: str) -> tuple[tuple[int, str], ...]:
+    """Points of codimension two: cusps of saddle-node curves, strong resonances that end Neimark-Sacker curves."""
+    n = equations.n
+    marks = []
+    if kind == "saddle-node":
+        plane = np.array([p.tangent[n : n + 2] for p in points])
+        size = np.linalg.norm(plane, axis=1)
+        for i in range(1, len(points)):
+            if plane[i - 1] @ plane[i] < -0.5 * size[i - 1] * size[i]:  # the curve turns back on itself
+                marks.append((i, "cusp"))
+        return tuple(marks)
+    angle = np.array([p.y[n + 2] * equations.scales[0] / equations.frequency_at(p.y) for p in points])
+    turn = math.pi * angle * (1 if equations.odd else 2)  # argument of the multiplier of the (half) map
+    for i in range(1, len(points)):
+        for target, name in ((0.0, "1:1 resonance"), (math.pi, "1:2 resonance")):
+            if (turn[i - 1] - target) * (turn[i] - target) < 0 and abs(turn[i] - turn[i - 1]) < 0.5:
+                marks.append((i, name))
+    return tuple(marks)
+
+
+def _peaks(equations: Equations, y: Floats) -> tuple[float, float]:
+    """max |x| and max |z| [m] of the orbit at a scaled point."""
+    X, W, H, odd = y[: equations.n] * equations.x_scale, equations.frequency_at(y), equations.H, equations.odd
+    pb = condense(equations.system_at(y))
+    u = np.empty((H + 5, pb.M11.shape[0]), complex)
+    harmonics_of(pb, H, odd, np.ascontiguousarray(X), u)
+    x = np.empty(H + 1, complex)
+    peaks = []
+    for row in range(2):
+        output_series(pb, H, odd, W, u, row, x)
+        peaks.append(float(peak_of(x, H, odd)))
+    return peaks[0], peaks[1]
+
+
+def _lies_on(
+    locus: Locus,
+    frequency: float,
+    value: float,
+    peak: float,
+    window: tuple[float, float],
+    bounds: tuple[float, float],
+) -> bool:
+    """Whether a special point on a slice belongs to a curve already followed."""
+    p, W = locus.values[:, 1], locus.frequency
+    for i in np.flatnonzero((p[:-1] - value) * (p[1:] - value) <= 0):
+        f = 0.5 if p[i] == p[i + 1] else (value - p[i]) / (p[i + 1] - p[i])
+        near = W[i] + f * (W[i + 1] - W[i])
+        height = locus.relative_peak[i] + f * (locus.relative_peak[i + 1] - locus.relative_peak[i])
+        leap = abs(W[i + 1] - W[i])
+        if abs(near - frequency) < 0.3 * leap + 2e-3 * (window[1] - window[0]) and abs(height - peak) < 0.05 * peak:
+            return True
+    return False
+
+
+def _event(equations: Equations, point: CurvePoint, parameter: str, direction: int) -> DetachedCurveEvent:
+    orbit = equations.orbit(point.y)
+    definite = _quadratic_form(equations, orbit) > 0
+    pipe, relative = _peaks(equations, point.y)
+    return DetachedCurveEvent(
+        "birth" if definite else "merge",
+        parameter,
+        equations.axis_values(point.y)[1],
+        equations.frequency_at(point.y),
+        pipe,
+        relative,
+        direction,
+    )
+
+
+def _quadratic_form(equations: Equations, orbit: Orbit) -> float:
+    """Determinant of the second-order form on the two directions in which the equations are singular.
+
+    Where the parameter is extreme along a saddle-node curve, (X, Omega) has two null directions; the solutions nearby
+    are the zeros of a quadratic form in them: an ellipse if it is definite (a closed curve is born), else a crossing.
+    """
+    left, _, right = np.linalg.svd(orbit.J)
+    v, w = np.asarray(right[-1], dtype=float), np.asarray(left[:, -1], dtype=float)
+    by_frequency = orbit.changes[0]
+    u = np.asarray(np.linalg.lstsq(orbit.J, -by_frequency.rate, rcond=1e-10)[0], dtype=float)
+    Kv, Ku = orbit.curvature_matrix(v), orbit.curvature_matrix(u)
+    vv = w @ (Kv @ v)
+    vu = w @ (Kv @ u + by_frequency.applied(orbit.J, v))
+    uu = w @ (Ku @ u + 2 * by_frequency.applied(orbit.J, u) + _second_by_frequency(equations, orbit))
+    return float(vv * uu - vu * vu)
+
+
+def _second_by_frequency(equations: Equations, orbit: Orbit) -> Floats:
+    """Second derivative (n,) of the residual by Omega."""
+    r = orbit.problem.M11.shape[0]
+    out = np.zeros(equations.n)
+    for m, k in enumerate(equations.harmonics):
+        u = orbit.X[2 * r * m : 2 * r * (m + 1)].reshape(r, 2) @ np.array([1, 1j])
+        S2, F2 = _second_derivatives(orbit.problem, 1j * k * orbit.W)
+        value = (1j * k) ** 2 * (S2 @ u - (F2 if k == 1 else 0))
+        out[2 * r * m : 2 * r * (m + 1)] = np.column_stack([value.real, value.imag]).ravel()
+    return out
+
+
+def _second_derivatives(pb: Problem, s: complex) -> tuple[Complexes, Complexes]:
+    """d2S/ds2 (r, r) and d2F/ds2 (r,) of the condensed stiffness and force."""
+    g = 1.0 / (s - pb.poles)
+    a, da, dda = s * s * pb.a2 + s * pb.a1 + pb.a0, 2 * s * pb.a2 + pb.a1, 2 * pb.a2
+    b, db, ddb = s * s * pb.b2 + s * pb.b1 + pb.b0, 2 * s * pb.b2 + pb.b1, 2 * pb.b2
+
+    def summed(f: Complexes, df: Complexes, ddf: Complexes) -> Complexes:
+        shape = (-1,) + (1,) * (f.ndim - 1)
+        h = g.reshape(shape)
+        return np.asarray(np.sum(ddf * h - 2 * df * h**2 + 2 * f * h**3, axis=0))
+
+    def outer(p: Complexes, q: Complexes) -> Complexes:
+        return np.asarray(p[:, :, None] * q[:, None, :])
+
+    f = outer(a, b)
+    df = outer(da, b) + outer(a, db)
+    ddf = outer(dda, b) + 2 * outer(da, db) + outer(a, ddb)
+    drive = pb.force_y[:, None]
+    return 2 * pb.M11 - summed(f, df, ddf), -summed(a * drive, da * drive, dda * drive)
+
+
+def _same_event(a: DetachedCurveEvent, b: DetachedCurveEvent) -> bool:
+    return abs(a.value - b.value) < 1e-5 * abs(a.value) and abs(a.frequency - b.frequency) < 1e-5 * a.frequency
+
+
+def _at_frequency(equations: Equations, points: list[CurvePoint], frequency: float) -> list[CurvePoint]:
+    """Points of a curve in the plane (Omega, parameter) at one frequency."""
+    scaled = frequency / equations.scales[0]
+    found = []
+    for a, b in itertools.pairwise(points):
+        if (a.y[equations.n] - scaled) * (b.y[equations.n] - scaled) <= 0:
+            point = between_points(equations.residual, a, b, lambda p: float(p.y[equations.n] - scaled), 1e-10)  # type: ignore[attr-defined]
+            if point is not None:
+                found.append(point)
+    return found
+
+
+def _from_point(
+    system: System,
+    given: Equations,
+    point: CurvePoint,
+    kind: str,
+    plane: tuple[str, str],
+    bounds: tuple[tuple[float, float], tuple[float, float]],
+    frequency: float,
+    value: float,
+) -> Locus | None:
+    """Follow a curve in a plane without the frequency from a point of a curve in a plane with it."""
+    cls = FoldEquations if kind == "saddle-node" else TorusEquations
+    scales = tuple(hi - lo for lo, hi in bounds)
+    equations = cls(system, plane, frequency, given.H, given.odd, given.x_scale, scales)  # type: ignore[arg-type]
+    first = point.y.copy()
+    first[given.n] = given.axis_values(point.y)[1] / scales[0]
+    first[given.n + 1] = value / scales[1]
+    if kind != "saddle-node":
+        first[-1] = point.y[-1] * given.scales[0] / scales[0]
+    found = _both_ways(equations, first, bounds)
+    return None if found is None else _locus(equations, found[0], kind, found[1])
+
+
+def _same_curve(a: Locus, b: Locus, bounds: tuple[tuple[float, float], tuple[float, float]]) -> bool:
+    """Whether the middle of one curve lies on the other."""
+    scales = np.array([hi - lo for lo, hi in bounds])
+    middle = a.values[len(a.values) // 2] / scales
+    distance = np.linalg.norm(b.values / scales - middle, axis=1)
+    i = int(np.argmin(distance))
+    same_height = abs(b.relative_peak[i] - a.relative_peak[len(a.values) // 2]) < 0.1 * b.relative_peak[i]
+    return bool(distance[i] < 0.05 and same_height)
