@@ -84,13 +84,12 @@ def quadratic_factors(c1, c2, c3, c4):
     q = c3 - 2.0 * c2 * s + 8.0 * s * s * s
     r = c4 - c3 * s + c2 * s * s - 3.0 * s * s * s * s
     w = _largest_cubic_root(2.0 * p, p * p - 4.0 * r, -q * q)
-    if w > 0.0:
-        alpha = math.sqrt(w)
-        beta = 0.5 * (p + w - q / alpha)
-        gamma = 0.5 * (p + w + q / alpha)
-    else:
-        root = math.sqrt(max(0.25 * p * p - r, 0.0))
-        alpha, beta, gamma = 0.0, 0.5 * p - root, 0.5 * p + root
+    alpha = math.sqrt(max(w, 0.0))
+    if w > 1e-10 * (abs(p) + math.sqrt(abs(r))):
+        split = q / alpha
+    else:  # the same number where the quotient would lose it
+        split = math.copysign(math.sqrt(max((p + w) * (p + w) - 4.0 * r, 0.0)), q)
+    beta, gamma = 0.5 * (p + w - split), 0.5 * (p + w + split)
     # back to lam = y - s: (y^2 + alpha y + beta) with y = lam + s
     A, B = alpha + 2.0 * s, beta + s * (alpha + s)
     G, H = -alpha + 2.0 * s, gamma + s * (-alpha + s)
@@ -103,7 +102,7 @@ def quadratic_factors(c1, c2, c3, c4):
         f1 = r3 + A * (-r2 + A * r1) - B * r1
         f2 = r4 + B * (-r2 + A * r1)
         det = m11 * m22 - m12 * m21
-        if abs(det) < 1e-12 * (abs(m11 * m22) + abs(m12 * m21)) or det == 0.0:
+        if abs(det) < 1e-12 * (abs(m11 * m22) + abs(m12 * m21)) or abs(det) < 1e-280:
             break
         a = (-f1 * m22 + f2 * m12) / det
         b = (-f2 * m11 + f1 * m21) / det
