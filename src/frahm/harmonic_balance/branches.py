@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass, field
 
@@ -10,12 +9,13 @@ import numpy as np
 
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Floats
-from frahm.harmonic_balance.condensation import Problem, condense
+from frahm.harmonic_balance.condensation import Problem, condense, unknowns
+from frahm.harmonic_balance.events import LocatedEvent, Point, events_after, is_eventful
 from frahm.harmonic_balance.floquet import Variation, variation_of
 from frahm.harmonic_balance.follow import CLOSED, follow
-from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count, unknowns
+from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count
 from frahm.harmonic_balance.newton import correct, solve_at
-from frahm.harmonic_balance.orbits import between, describe, locate, same_harmonics
+from frahm.harmonic_balance.orbits import between, describe, same_harmonics
 from frahm.harmonic_balance.seeds import (
     Seed,
     count_cubic,
@@ -29,19 +29,9 @@ from frahm.systems import System
 GOAL = 1e-8
 _AUTO_HARMONICS = 101
 _MOST_POINTS = 6000
-_LONGEST = 0.016
+_LONGEST = 0.02
 _SEED_FREQUENCIES = 17
 _GRID = 401
-
-
-@dataclass(frozen=True)
-class LocatedEvent:
-    """A special point of a branch: kind, its point, and the half-width of the interval that holds it [rad/s]."""
-
-    kind: str
-    columns: Floats
-    half_width: float
-    located: bool
 
 
 @dataclass
@@ -138,20 +128,24 @@ def _seeds_at(pb: Problem, W: float, e: Floats | None, scale: float, odd: bool, 
     return searched_seeds(pb, W, scale, odd)
 
 
-def seed_frequencies(search: Search) -> Floats:
-    """Frequencies of the window at which branches are looked for: spread, and inside every range of three roots."""
+def seed_frequencies(search: Search) -> tuple[Floats, Floats]:
+    """Frequencies at which all first-harmonic roots are starts, and further ones for free third harmonics alone.
+
+    With one cubic element the roots are continuous where their number is constant, so that one frequency in every
+    such range, and both edges, stand for all.
+    """
     spread = np.linspace(search.lo, search.hi, _SEED_FREQUENCIES)
     e = spring_polynomial(search.problem)
     if e is None or e.size != 2 or e[0] != 0:
-        return np.linspace(search.lo, search.hi, 3 * _SEED_FREQUENCIES)
+        return np.linspace(search.lo, search.hi, 3 * _SEED_FREQUENCIES), np.empty(0)
     grid = np.linspace(search.lo, search.hi, _GRID)
     counts, excess = np.empty(_GRID, np.int64), np.empty(_GRID)
     count_cubic(search.problem, grid, e[1], counts, excess)
     edges = np.flatnonzero(np.diff(counts)) + 1
-    middles = [grid[run[len(run) // 2]] for run in np.split(np.arange(_GRID), edges) if counts[run[0]] > 1]
+    middles = [grid[run[len(run) // 2]] for run in np.split(np.arange(_GRID), edges)]
     inner = excess[1:-1]
     almost = np.flatnonzero((inner > excess[:-2]) & (inner > excess[2:]) & (inner < 0)) + 1
-    return np.unique(np.concatenate([spread, middles, grid[almost]]))
+    return np.unique(np.concatenate([spread[[0, -1]], middles, grid[almost]])), spread
 
 
 def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
@@ -163,14 +157,14 @@ def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
     e = spring_polynomial(pb)
     odd = pb.odd
     tracks: list[Track] = []
-    for W in seed_frequencies(search):
-        seeds = _seeds_at(pb, float(W), e, search.x_scale, odd)
-        seeds.sort(key=lambda seed: float(np.max(np.abs(seed.harmonics[1]))))
-        for seed in seeds:
-            start = solve_seed(search, seed, odd)
-            if start is None or any(_lies_on(search, track, *start) for track in tracks):
-                continue
-            tracks.append(_followed(search, odd, *start))
+    complete_at, beside = seed_frequencies(search)
+    seeds = [seed for W in complete_at for seed in _seeds_at(pb, float(W), e, search.x_scale, odd)]
+    seeds += [seed for W in beside for seed in _seeds_at(pb, float(W), e, search.x_scale, odd) if 3 in seed.harmonics]
+    for seed in seeds:
+        start = solve_seed(search, seed, odd)
+        if start is None or any(_lies_on(search, track, *start) for track in tracks):
+            continue
+        tracks.append(_followed(search, odd, *start))
     tracks = [track for track in tracks if complete(search, track)]
     for track in list(tracks) if asymmetric else []:
         tracks += asymmetric_branches(search, track, tracks)
@@ -340,15 +334,21 @@ def _half_of_pair(search: Search, track: Track) -> Track:
         i for i in range(len(parts) - 1)
         if float(np.dot(*(p[: min(parts[i].size, parts[i + 1].size)] for p in parts[i : i + 2]))) < 0
     ]  # fmt: skip
+    sizes = np.array([np.linalg.norm(p) for p in parts])
     if not flips:
-        return track
-    if track.closed:
+        keep = np.arange(len(parts))
+    elif track.closed:
         order = np.concatenate([np.arange(flips[0] + 1, len(parts) - 1), np.arange(flips[0] + 1)])
         keep = order[: ((flips[1] if len(flips) > 1 else flips[0]) - flips[0]) or len(order)]
     else:
-        start = int(np.argmax([np.linalg.norm(p) for p in parts]))
+        start = int(np.argmax(sizes))
         low = max([i + 1 for i in flips if i < start], default=0)
         keep = np.arange(low, min([i + 1 for i in flips if i >= start], default=len(parts)))
+    if flips or not track.closed:  # an end that is all but symmetric lies on the point where the branch was born
+        keep = keep[int(sizes[keep[0]] < 0.05 * sizes[keep[1]]) :] if len(keep) > 2 else keep
+        keep = keep[: -1 if sizes[keep[-1]] < 0.05 * sizes[keep[-2]] else None] if len(keep) > 2 else keep
+    if len(keep) == len(parts):
+        return track
     part = [track.ys[keep], track.ts[keep], track.Hs[keep], track.truncations[keep]]
     return _track(search, False, [tuple(part)], False, track.endings)
 
@@ -399,7 +399,8 @@ def _uncover(search: Search, track: Track) -> None:
         bend = left - 2 * mid + right
         with np.errstate(divide="ignore", invalid="ignore"):
             summit = mid - (right - left) ** 2 / (8 * bend)
-        hidden = ((mid - left) * (mid - right) > 0) & (np.sign(summit) != np.sign(mid)) & (np.abs(bend) > 1e-12)
+        crossed = (np.sign(summit) != np.sign(mid)) | (np.abs(summit) < 0.1 * np.abs(bend))
+        hidden = ((mid - left) * (mid - right) > 0) & crossed & (np.abs(bend) > 1e-9)
         rows = np.flatnonzero(hidden.any(axis=1)) + 1
         wanted = np.unique(np.concatenate([rows - 1, rows])) if rows.size else rows
         wanted = wanted[track.frequency[wanted] != track.frequency[wanted + 1]]  # not across a gap between pieces
@@ -448,53 +449,11 @@ def _midpoint(search: Search, track: Track, i: int, fraction: float = 0.5) -> tu
 
 def _locate_events(search: Search, track: Track) -> None:
     """Locate every change of stability or direction along the branch and put its point on the branch."""
-    pb, odd = search.problem, track.odd
-    ends = [unknowns(pb, H, odd) for H in track.Hs]
-    rise = track.ts[np.arange(len(ends)), ends]
-    unstable = np.sum(np.abs(track.multipliers) > 1, axis=1)
-    inserted: list[tuple[int, tuple[Floats, Floats, int]]] = []
-    for i, j in itertools.pairwise(range(len(ends))):
-        if track.frequency[i] == track.frequency[j]:  # the branch was outside the window in between
-            continue
-        folded = rise[i] * rise[j] < 0
-        ranks = list(range(min(unstable[i], unstable[j]), max(unstable[i], unstable[j])))
-        if folded:
-            inserted += _one_event(search, track, i, -1)
-        if ranks and not (folded and len(ranks) == 1):
-            pairs = ranks[::2] if len(ranks) % 2 == 0 else ranks
-            for rank in pairs:
-                inserted += _one_event(search, track, i, rank)
+    inserted: list[tuple[int, Point]] = []
+    for i in np.flatnonzero(is_eventful(search, track)):
+        for event, point in events_after(search, track, int(i)):
+            track.events.append(event)
+            track.event_points.append(point)
+            if point is not None:
+                inserted.append((int(i), point))
     _put_in(search, track, inserted)
-
-
-def _one_event(search: Search, track: Track, i: int, rank: int) -> list[tuple[int, tuple[Floats, Floats, int]]]:
-    """Locate one event between points i and i + 1, note it, and return its point for insertion."""
-    pb, odd = search.problem, track.odd
-    size = search.size(odd)
-    y, t = np.zeros(size), np.zeros(size)
-    multipliers = np.zeros(2 * search.variation.K.shape[0], complex)
-    ok, H, half = locate(
-        pb, search.variation, odd, track.ys[i], track.ts[i], track.Hs[i], track.ys[i + 1], track.ts[i + 1],
-        track.Hs[i + 1], rank, search.x_scale, search.w_scale, y, t, multipliers,
-    )  # fmt: skip
-    if not ok:
-        kind = "saddle-node" if rank < 0 else _kind(track.odd, track.multipliers[i, rank])
-        middle = 0.5 * (track.columns[i] + track.columns[i + 1])
-        half = 0.5 * abs(track.frequency[i + 1] - track.frequency[i])
-        track.events.append(LocatedEvent(kind, middle, half, False))
-        track.event_points.append(None)
-        return []
-    columns, _ = _described(search, odd, y[None], np.array([H]))
-    kind = "saddle-node" if rank < 0 else _kind(odd, multipliers[rank])
-    track.events.append(LocatedEvent(kind, columns[0], float(half), True))
-    track.event_points.append((y, t, int(H)))
-    return [(i, (y, t, int(H)))]
-
-
-def _kind(odd: bool, multiplier: complex) -> str:
-    """Kind of event from the critical multiplier of the (half) map."""
-    if abs(multiplier.imag) > 1e-6 * abs(multiplier):
-        return "neimark-sacker"
-    if multiplier.real > 0:
-        return "branch-point"
-    return "branch-point" if odd else "period-doubling"

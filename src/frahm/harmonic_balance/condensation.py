@@ -51,6 +51,11 @@ class Problem(NamedTuple):
     odd: bool  # whether every law is odd, so that odd harmonics form a closed set
 
 
+def unknowns(problem: Problem, H: int, odd: bool) -> int:
+    """Length of the unknown vector with harmonics up to H, for callers outside compiled code."""
+    return 2 * problem.M11.shape[0] * int((H + 1) // 2 if odd else H + 1)
+
+
 def condense(system: System) -> Problem:
     """Condense a system with at least one nonlinear element onto the elements' coordinates.
 

@@ -15,7 +15,7 @@ import numpy as np
 from frahm.absorbers.packed import law_curvature, law_force_and_slopes
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import CondensedChange, Problem, condense, coordinates
+from frahm.harmonic_balance.condensation import CondensedChange, Problem, condense, coordinates, unknowns
 from frahm.harmonic_balance.kernels import (
     _add_slopes,
     fourier_tables,
@@ -23,7 +23,6 @@ from frahm.harmonic_balance.kernels import (
     residual_and_jacobian,
     sample_count,
     stiffness,
-    unknowns,
 )
 from frahm.systems import System, derivative_of, with_parameters
 

@@ -12,7 +12,7 @@ from frahm.harmonic_balance.newton import correct, resize, tangent
 
 LEFT, CLOSED, STEP_TOO_SMALL, TOO_LONG, NO_START = 0, 1, 2, 3, 4
 
-_ANGLE = 0.25  # turn of the tangent aimed at per step [rad]
+_ANGLE = 0.3  # turn of the tangent aimed at per step [rad]
 _SHARPEST = 0.5  # turn beyond which a step is taken again, shorter [rad]
 _TOLERANCE = 3e-7  # last Newton step, in scaled unknowns: what remains is of the order of its square
 

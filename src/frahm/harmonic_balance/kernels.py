@@ -37,6 +37,13 @@ def sample_count(pb, H, odd):
 
 
 @kernel
+def inverse(c):
+    """1/c without the guards against overflow that a general complex division carries."""
+    scale = 1.0 / (c.real * c.real + c.imag * c.imag)
+    return complex(c.real * scale, -c.imag * scale)
+
+
+@kernel
 def stiffness(pb, s, S, dS, force, dforce):
     """S(s) and dS/ds (r, r), condensed harmonic force and its derivative (r,)."""
     r = pb.M11.shape[0]
@@ -47,7 +54,7 @@ def stiffness(pb, s, S, dS, force, dforce):
             S[i, j] = s * (s * pb.M11[i, j] + pb.C11[i, j]) + pb.K11[i, j]
             dS[i, j] = 2.0 * s * pb.M11[i, j] + pb.C11[i, j]
     for q in range(pb.poles.size):
-        g = 1.0 / (s - pb.poles[q])
+        g = inverse(s - pb.poles[q])
         for i in range(r):
             a = s * (s * pb.a2[q, i] + pb.a1[q, i]) + pb.a0[q, i]
             da = 2.0 * s * pb.a2[q, i] + pb.a1[q, i]
@@ -73,7 +80,7 @@ def output_harmonic(pb, k, W, u, row):
         drive = pb.force_y[q] if k == 1 else 0j
         for i in range(u.size):
             drive -= (s * (s * pb.b2[q, i] + pb.b1[q, i]) + pb.b0[q, i]) * u[i]
-        value += pb.out_y[row, q] * drive / (s - pb.poles[q])
+        value += pb.out_y[row, q] * drive * inverse(s - pb.poles[q])
     return value
 
 

@@ -12,10 +12,10 @@ from frahm.arrays import Complexes, Floats
 from frahm.continuation import ContinuationSettings, CurvePoint, between_points, follow_curve, newton
 from frahm.errors import Outcome
 from frahm.harmonic_balance.branches import LocatedEvent, Search, Track, begin, find_branches
-from frahm.harmonic_balance.condensation import Problem, condense
+from frahm.harmonic_balance.condensation import Problem, condense, unknowns
 from frahm.harmonic_balance.equations import FREQUENCY, Equations, FoldEquations, Orbit, TorusEquations
 from frahm.harmonic_balance.floquet import map_multipliers
-from frahm.harmonic_balance.kernels import harmonics_of, unknowns
+from frahm.harmonic_balance.kernels import harmonics_of
 from frahm.harmonic_balance.orbits import output_series, peak_of
 from frahm.systems import System, parameter_value, with_parameters
 

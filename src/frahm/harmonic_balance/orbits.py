@@ -15,7 +15,7 @@ from frahm.harmonic_balance.newton import correct, resize, tangent
 @kernel
 def peak_of(x, H, odd):
     """Largest |Re sum_k x_k e^{ik tau}| over a period: best sample, then Newton on the derivative."""
-    N = max(32, 4 * H + 8)
+    N = max(24, (2 if odd else 4) * H + 8)
     first, step = (1, 2) if odd else (0, 1)
     span = math.pi if odd else 2.0 * math.pi
     best, at = -1.0, 0.0

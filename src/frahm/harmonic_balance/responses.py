@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 
 from frahm.arrays import Complexes, Floats, frozen
 from frahm.harmonic_balance.branches import Search, Track, begin, find_branches
+from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.floquet import monodromy, variation_of
-from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic, unknowns
+from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic
 from frahm.harmonic_balance.linear import is_linear, linear_exponents, linear_response
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of

@@ -16,8 +16,8 @@ from scipy.stats import qmc
 
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import Problem
-from frahm.harmonic_balance.kernels import stiffness, unknowns
+from frahm.harmonic_balance.condensation import Problem, unknowns
+from frahm.harmonic_balance.kernels import stiffness
 from frahm.harmonic_balance.newton import solve_at
 from frahm.polynomials import universal_roots
 
