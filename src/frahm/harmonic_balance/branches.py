@@ -18,6 +18,7 @@ from frahm.harmonic_balance.newton import correct, solve_at
 from frahm.harmonic_balance.orbits import between, describe, same_harmonics
 from frahm.harmonic_balance.seeds import (
     Seed,
+    almost_seeds,
     count_cubic,
     searched_seeds,
     single_element_seeds,
@@ -38,7 +39,8 @@ _GRID = 401
 class Track:
     """One branch as it was followed: points, tangents, harmonics, and what they mean.
 
-    columns are Omega, |X1|, |Z1|, max |x|, max |z|; multipliers those of the (half) map, by descending modulus.
+    columns are Omega, |X1|, |Z1|, max |x|, max |z|; multipliers those of the (half) map, by descending modulus; births
+    are losses of symmetry outside the window, from where an asymmetric branch may come into it.
     """
 
     odd: bool
@@ -52,6 +54,7 @@ class Track:
     endings: tuple[int, ...]
     events: list[LocatedEvent] = field(default_factory=list)
     event_points: list[tuple[Floats, Floats, int] | None] = field(default_factory=list)
+    births: list[tuple[LocatedEvent, Point]] = field(default_factory=list)
     parent: Track | None = None
 
     @property
@@ -128,8 +131,8 @@ def _seeds_at(pb: Problem, W: float, e: Floats | None, scale: float, odd: bool, 
     return searched_seeds(pb, W, scale, odd)
 
 
-def seed_frequencies(search: Search) -> tuple[Floats, Floats]:
-    """Frequencies at which all first-harmonic roots are starts, and further ones for free third harmonics alone.
+def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
+    """Frequencies for starts: all first-harmonic roots; free third harmonics; near misses of further roots.
 
     With one cubic element the roots are continuous where their number is constant, so that one frequency in every
     such range, and both edges, stand for all.
@@ -137,7 +140,7 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats]:
     spread = np.linspace(search.lo, search.hi, _SEED_FREQUENCIES)
     e = spring_polynomial(search.problem)
     if e is None or e.size != 2 or e[0] != 0:
-        return np.linspace(search.lo, search.hi, 3 * _SEED_FREQUENCIES), np.empty(0)
+        return np.linspace(search.lo, search.hi, 3 * _SEED_FREQUENCIES), np.empty(0), np.empty(0)
     grid = np.linspace(search.lo, search.hi, _GRID)
     counts, excess = np.empty(_GRID, np.int64), np.empty(_GRID)
     count_cubic(search.problem, grid, e[1], counts, excess)
@@ -145,7 +148,7 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats]:
     middles = [grid[run[len(run) // 2]] for run in np.split(np.arange(_GRID), edges)]
     inner = excess[1:-1]
     almost = np.flatnonzero((inner > excess[:-2]) & (inner > excess[2:]) & (inner < 0)) + 1
-    return np.unique(np.concatenate([spread[[0, -1]], middles, grid[almost]])), spread
+    return np.unique(np.concatenate([spread[[0, -1]], middles])), spread, grid[almost]
 
 
 def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
@@ -157,9 +160,10 @@ def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
     e = spring_polynomial(pb)
     odd = pb.odd
     tracks: list[Track] = []
-    complete_at, beside = seed_frequencies(search)
+    complete_at, beside, almost = seed_frequencies(search)
     seeds = [seed for W in complete_at for seed in _seeds_at(pb, float(W), e, search.x_scale, odd)]
     seeds += [seed for W in beside for seed in _seeds_at(pb, float(W), e, search.x_scale, odd) if 3 in seed.harmonics]
+    seeds += [seed for W in almost for seed in almost_seeds(pb, float(W), e[1])] if e is not None else []
     for seed in seeds:
         start = solve_seed(search, seed, odd)
         if start is None or any(_lies_on(search, track, *start) for track in tracks):
@@ -254,11 +258,27 @@ def complete(search: Search, track: Track) -> bool:
     inside = (track.frequency >= search.lo) & (track.frequency <= search.hi)
     if np.sum(inside) < 2:
         return False
+    track.births = _births_outside(search, track, inside) if track.odd else []
     _trim(search, track)
     track.columns, track.multipliers = _described(search, track.odd, track.ys, track.Hs)
     _uncover(search, track)
     _locate_events(search, track)
     return True
+
+
+def _births_outside(search: Search, track: Track, inside: np.ndarray) -> list[tuple[LocatedEvent, Point]]:
+    """Losses of symmetry where a followed branch lies outside the window."""
+    found: list[tuple[LocatedEvent, Point]] = []
+    for rows in np.split(np.arange(len(inside)), np.flatnonzero(np.diff(inside)) + 1):
+        if inside[rows[0]]:
+            continue
+        rows = np.arange(max(rows[0] - 1, 0), min(rows[-1] + 2, len(inside)))
+        part = Track(True, track.ys[rows], track.ts[rows], track.Hs[rows], track.truncations[rows],
+                     *_described(search, True, track.ys[rows], track.Hs[rows]), False, ())  # fmt: skip
+        for i in np.flatnonzero(is_eventful(search, part)):
+            events = events_after(search, part, int(i))
+            found += [(event, point) for event, point in events if event.kind == "branch-point" and point is not None]
+    return found
 
 
 def _described(search: Search, odd: bool, ys: Floats, Hs: np.ndarray) -> tuple[Floats, np.ndarray]:
@@ -276,9 +296,9 @@ def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> li
     if not parent.odd:
         return []
     tracks: list[Track] = []
-    for event, point in zip(parent.events, parent.event_points, strict=True):
-        if event.kind != "branch-point" or point is None:
-            continue
+    own = zip(parent.events, parent.event_points, strict=True)
+    births = [(event, point) for event, point in own if event.kind == "branch-point" and point is not None]
+    for event, point in births + parent.births:
         ends = [c for t in known + tracks if not t.odd for c in (t.columns[0], t.columns[-1])]
         if any(np.allclose(c[[0, 4]], event.columns[[0, 4]], rtol=2e-3) for c in ends):
             continue
@@ -287,9 +307,19 @@ def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> li
             continue
         track = _half_of_pair(search, _followed(search, False, *start))
         track.parent = parent
-        if complete(search, track):
+        if complete(search, track) and not any(_is_same(search, track, t) for t in known + tracks if not t.odd):
             tracks.append(track)
     return tracks
+
+
+def _is_same(search: Search, track: Track, other: Track) -> bool:
+    """Whether two asymmetric branches are one, or mirror images of one another, judged where the first is least odd."""
+    pb, r = search.problem, search.problem.M11.shape[0]
+    i = int(np.argmax([np.linalg.norm(_even_part(search, y, H)) for y, H in zip(track.ys, track.Hs, strict=True)]))
+    y, H = track.ys[i], int(track.Hs[i])
+    mirrored = y.copy()
+    mirrored[: unknowns(pb, H, False)].reshape(-1, 2 * r)[::2] *= -1
+    return _lies_on(search, other, y, H) or _lies_on(search, other, mirrored, H)
 
 
 def _asymmetric_start(search: Search, y: Floats, _: Floats, H: int) -> tuple[Floats, int] | None:
