@@ -283,7 +283,7 @@ class FoldEquations(Equations):
 
 @dataclass
 class TorusEquations(Equations):
-    """Neimark-Sacker points: R = 0 and complex g = 0, unknowns (X, q1, q2, nu), nu scaled by `scales` of Omega.
+    """Neimark-Sacker points: R = 0 and complex g = 0, unknowns (X, q1, q2, nu), nu scaled by `frequency`.
 
     The disturbance e^{i nu t} sum_k v_k e^{ik Omega t} uses the harmonics -H ... H of the orbit's parity.
     """
@@ -301,7 +301,7 @@ class TorusEquations(Equations):
         if min(self.axis_values(y)) <= 0:
             return np.full(n + 2, np.nan), np.full((n + 2, n + 3), np.nan)
         orbit = self.orbit(y)
-        nu = float(y[n + 2] * self.scales[0])
+        nu = float(y[n + 2] * self.frequency)
         A, parts = self._hill(orbit, nu)
         weight = 1.0 / np.max(np.abs(A), axis=1)
         if self.border is None:
@@ -318,7 +318,7 @@ class TorusEquations(Equations):
         )
         gradient = np.append(gradient, -w @ self._diagonal([1j * dS for _, dS in parts]) @ v)
         columns = np.column_stack([orbit.J, *(change.rate for change in orbit.changes), np.zeros(n)])
-        scale = np.concatenate([np.full(n, self.x_scale), self.scales, self.scales[:1]])
+        scale = np.concatenate([np.full(n, self.x_scale), self.scales, [self.frequency]])
         J = np.vstack([columns, gradient.real, gradient.imag]) * scale
         R = np.concatenate([orbit.R, [vg[-1].real, vg[-1].imag]])
         rows = np.max(np.abs(J), axis=1)

@@ -90,7 +90,13 @@ class _Start:
 
 
 def loci_with_frequency(
-    system: System, kind: str, parameter: str, window: tuple[float, float], bounds: tuple[float, float], slices: int
+    system: System,
+    kind: str,
+    parameter: str,
+    window: tuple[float, float],
+    bounds: tuple[float, float],
+    slices: int,
+    asymmetric: bool = True,
 ) -> tuple[list[Locus], list[tuple[Equations, list[CurvePoint]]]]:
     """Curves of one kind in the plane (Omega, parameter): those that cross one of several slices of the plane.
 
@@ -100,7 +106,7 @@ def loci_with_frequency(
     loci: list[Locus] = []
     traces: list[tuple[Equations, list[CurvePoint]]] = []
     for value in _slice_values(system, parameter, bounds, slices):
-        for start in _starts(system, kind, parameter, window, value):
+        for start in _starts(system, kind, parameter, window, value, asymmetric):
             frequency, peak = float(start.event.columns[0]), float(start.event.columns[4])
             if any(_lies_on(locus, frequency, value, peak, window, bounds) for locus in loci):
                 continue
@@ -141,7 +147,7 @@ def detached_events(
     system: System, parameter: str, window: tuple[float, float], bounds: tuple[float, float], slices: int
 ) -> list[DetachedCurveEvent]:
     """Births and merges of detached curves: extremes of the parameter along its saddle-node curves."""
-    _, traces = loci_with_frequency(system, "saddle-node", parameter, window, bounds, slices)
+    _, traces = loci_with_frequency(system, "saddle-node", parameter, window, bounds, slices, asymmetric=False)
     events: list[DetachedCurveEvent] = []
     for equations, points in traces:
         at = equations.n + 1
@@ -166,10 +172,12 @@ def _slice_values(system: System, parameter: str, bounds: tuple[float, float], s
     return np.unique(np.append(values[values > 0], [now] if lo <= now <= hi else []))
 
 
-def _starts(system: System, kind: str, parameter: str, window: tuple[float, float], value: float) -> list[_Start]:
+def _starts(
+    system: System, kind: str, parameter: str, window: tuple[float, float], value: float, asymmetric: bool
+) -> list[_Start]:
     search = begin(with_parameters(system, **{parameter: float(value)}), *window, None)
     starts = []
-    for track in find_branches(search, asymmetric=kind != "saddle-node"):
+    for track in find_branches(search, asymmetric):
         for event, point in zip(track.events, track.event_points, strict=True):
             if event.kind == kind and point is not None:
                 starts.append(_Start(search, track, event, point, float(value)))
@@ -198,7 +206,7 @@ def _follow(
         first[:n0] = y[:n0] / start.search.x_scale
         first[equations.n : equations.n + 2] = [given[0] / scales[0], given[1] / scales[1]]
         if kind != "saddle-node":
-            first[-1] = _angular_rate(start) / scales[0]
+            first[-1] = _angular_rate(start) / frequency
         found = _both_ways(equations, first, bounds)
         if found is None:
             return None
@@ -275,7 +283,7 @@ def _marks(equations: Equations, points: list[CurvePoint], kind: str) -> tuple[t
             if plane[i - 1] @ plane[i] < -0.5 * size[i - 1] * size[i]:  # the curve turns back on itself
                 marks.append((i, "cusp"))
         return tuple(marks)
-    angle = np.array([p.y[n + 2] * equations.scales[0] / equations.frequency_at(p.y) for p in points])
+    angle = np.array([p.y[n + 2] * equations.frequency / equations.frequency_at(p.y) for p in points])
     turn = math.pi * angle * (1 if equations.odd else 2)  # argument of the multiplier of the (half) map
     for i in range(1, len(points)):
         for target, name in ((0.0, "1:1 resonance"), (math.pi, "1:2 resonance")):
@@ -417,7 +425,7 @@ def _from_point(
     first[given.n] = given.axis_values(point.y)[1] / scales[0]
     first[given.n + 1] = value / scales[1]
     if kind != "saddle-node":
-        first[-1] = point.y[-1] * given.scales[0] / scales[0]
+        first[-1] = point.y[-1] * given.frequency / frequency
     found = _both_ways(equations, first, bounds)
     return None if found is None else _locus(equations, found[0], kind, found[1])
 

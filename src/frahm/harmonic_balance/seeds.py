@@ -108,6 +108,24 @@ def single_element_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
     return seeds
 
 
+def almost_seeds(pb: Problem, W: float, k: float) -> list[Seed]:
+    """Starts where the first harmonic nearly has a pair of further roots: the exact equations may have them.
+
+    They lie around the turning points of m^3 + 2 c m^2 + m, or its point of inflection.
+    """
+    S, F = stiffness_at(pb, 1, W)
+    size = abs(S[0, 0])
+    c = math.copysign(1.0, k) * S[0, 0].real / size
+    spread = math.sqrt(max(4 * c * c - 3, 0.0))
+    seeds = []
+    for m in {(-2 * c + part * spread) / 3 for part in (-1.2, -0.8, 0.0, 0.8, 1.2)}:
+        if m > 0:
+            N = m * size / abs(k)
+            Z = F[0] / (S[0, 0] + k * N)
+            seeds.append(Seed(W, {1: np.array([Z * math.sqrt(N) / abs(Z)])}))
+    return seeds
+
+
 def _third_harmonics(S3: complex, Z: complex, e: Floats) -> list[complex]:
     """Third harmonics that a cubic spring admits beside Z, when there is more than the one that vanishes with it."""
     if e.size < 2:

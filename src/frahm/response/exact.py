@@ -34,8 +34,8 @@ def exact_curve(system: System, lo: float, hi: float, harmonics: int | None) -> 
 def inventory_text(elements: int, degree: int) -> str:
     """What the search for branches proves and what it only searches."""
     if elements == 1 and degree > 0:
-        start = "all first-harmonic roots, with every free third harmonic beside them, at spread frequencies and inside"
-        start += " every range with several roots"
+        start = "all first-harmonic roots, with every free third harmonic beside them, and near misses of further roots"
+        start += " (a detached curve within about 0.1 % of its birth can be missed)"
     else:
         start = "first-harmonic solutions searched from a fixed spread of starts (not proven complete)"
     return (
