@@ -40,6 +40,8 @@ class Locus:
         Points of codimension two on the curve: "cusp", "1:1 resonance", "1:2 resonance".
     outcomes : tuple of Outcome
         How both ends ended.
+    symmetric : bool
+        Whether the orbits repeat themselves mirrored after half a period.
     """
 
     kind: str
@@ -49,6 +51,7 @@ class Locus:
     relative_peak: Floats
     marks: tuple[tuple[int, str], ...]
     outcomes: tuple[Outcome, ...]
+    symmetric: bool
 
 
 @dataclass(frozen=True)
@@ -108,7 +111,8 @@ def loci_with_frequency(
     for value in _slice_values(system, parameter, bounds, slices):
         for start in _starts(system, kind, parameter, window, value, asymmetric):
             frequency, peak = float(start.event.columns[0]), float(start.event.columns[4])
-            if any(_lies_on(locus, frequency, value, peak, window, bounds) for locus in loci):
+            alike = [locus for locus in loci if locus.symmetric == start.track.odd]
+            if any(_lies_on(locus, frequency, value, peak, window) for locus in alike):
                 continue
             found = _follow(system, start, kind, (FREQUENCY, parameter), (window, bounds), frequency)
             if found is not None:
@@ -246,9 +250,21 @@ def _both_ways(
         parts.append(part)
         if outcomes[-1] is Outcome.CLOSED:
             return part, tuple(outcomes)
-    backward = [CurvePoint(p.y, -p.tangent) for p in parts[1][:0:-1]]
-    points = backward + parts[0]
+    forward, backward = (_before_mirror(equations, part) for part in parts)
+    points = [CurvePoint(p.y, -p.tangent) for p in backward[:0:-1]] + forward
     return (points, tuple(outcomes)) if len(points) > 2 else None
+
+
+def _before_mirror(equations: Equations, points: list[CurvePoint]) -> list[CurvePoint]:
+    """Points of asymmetric orbits up to where they pass through a symmetric one into their mirror images."""
+    if equations.odd or not equations.problem.odd:
+        return points
+    r = equations.problem.M11.shape[0]
+    even = [p.y[: equations.n].reshape(-1, 2 * r)[::2].ravel() for p in points]
+    for i in range(1, len(points)):
+        if even[i - 1] @ even[i] < 0:
+            return points[:i]
+    return points
 
 
 def _angular_rate(start: _Start) -> float:
@@ -269,7 +285,8 @@ def _locus(equations: Equations, points: list[CurvePoint], kind: str, outcomes: 
     values = np.array([equations.axis_values(p.y) for p in points])
     described = np.array([_peaks(equations, p.y) for p in points])
     frequency = np.array([equations.frequency_at(p.y) for p in points])
-    return Locus(kind, values, frequency, described[:, 0], described[:, 1], _marks(equations, points, kind), outcomes)
+    marks = _marks(equations, points, kind)
+    return Locus(kind, values, frequency, described[:, 0], described[:, 1], marks, outcomes, equations.odd)
 
 
 def _marks(equations: Equations, points: list[CurvePoint], kind: str) -> tuple[tuple[int, str], ...]:
@@ -306,14 +323,7 @@ def _peaks(equations: Equations, y: Floats) -> tuple[float, float]:
     return peaks[0], peaks[1]
 
 
-def _lies_on(
-    locus: Locus,
-    frequency: float,
-    value: float,
-    peak: float,
-    window: tuple[float, float],
-    bounds: tuple[float, float],
-) -> bool:
+def _lies_on(locus: Locus, frequency: float, value: float, peak: float, window: tuple[float, float]) -> bool:
     """Whether a special point on a slice belongs to a curve already followed."""
     p, W = locus.values[:, 1], locus.frequency
     for i in np.flatnonzero((p[:-1] - value) * (p[1:] - value) <= 0):
