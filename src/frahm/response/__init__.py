@@ -1,6 +1,6 @@
 """Room `response`: one verb for the response curve, whatever the method, and maps of it."""
 
-from frahm.harmonic_balance.loci import DetachedCurveEvent
+from frahm.harmonic_balance.detached import DetachedCurveEvent
 from frahm.response.curve import Branch, ResponseCurve, SpecialPoint
 from frahm.response.frequency_response import frequency_response, periodic_responses
 from frahm.response.loci import bifurcation_curve, detached_curve_events

@@ -11,13 +11,8 @@ from frahm.arrays import labelled
 from frahm.case import Case
 from frahm.errors import ParameterError, check_choice, check_count, check_number, nearest
 from frahm.harmonic_balance import is_linear
-from frahm.harmonic_balance.loci import (
-    DetachedCurveEvent,
-    Locus,
-    detached_events,
-    loci_at_frequency,
-    loci_with_frequency,
-)
+from frahm.harmonic_balance.detached import DetachedCurveEvent, detached_events
+from frahm.harmonic_balance.loci import Locus, loci_at_frequency, loci_with_frequency
 from frahm.systems import (
     PARAMETERS,
     System,

@@ -6,8 +6,8 @@ import pytest
 import frahm
 from frahm.harmonic_balance.branches import begin, find_branches
 from frahm.harmonic_balance.condensation import CondensedChange, coordinates, linear_part, unknowns
+from frahm.harmonic_balance.detached import _second_derivatives
 from frahm.harmonic_balance.equations import FoldEquations, TorusEquations
-from frahm.harmonic_balance.loci import _second_derivatives
 from frahm.harmonic_balance.seeds import stiffness_at
 from frahm.systems import derivative_of, parameter_value, with_parameters
 
