@@ -30,6 +30,9 @@ _PUBLIC = {
     "stability_boundaries": "frahm.response",
     "bifurcation_curve": "frahm.response",
     "detached_curve_events": "frahm.response",
+    "find_attractors": "frahm.attractors",
+    "Attractor": "frahm.attractors",
+    "AttractorSet": "frahm.attractors",
 }
 
 __all__ = ["__version__", *_PUBLIC]

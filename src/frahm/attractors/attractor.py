@@ -1,0 +1,200 @@
+"""What a long-term motion is to a designer: `Attractor`, and the set of them at one excitation frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+from scipy.stats import beta
+
+from frahm.arrays import Floats, labelled
+from frahm.attractors.regions import Region
+from frahm.errors import Outcome
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+KINDS = ("periodic", "quasi-periodic", "chaotic", "unsettled")
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class Attractor:
+    """A long-term motion and how likely it is.
+
+    Attributes
+    ----------
+    kind : str
+        "periodic", "quasi-periodic" (modulated), "chaotic", or "unsettled": not an attractor but the share of motions
+        that end on none within the periods allowed, escape, or cannot be integrated; `outcome` says which.
+    frequency, detuning : float
+        Of the excitation [rad/s].
+    pipe_peak, relative_peak : float
+        Largest |x| of the output and |z| of the first element [m]. Where the motion does not repeat: over 1000 periods,
+        the median of eight such windows. Infinite for an escaping motion, NaN for one that cannot be integrated.
+    pipe_rms, relative_rms : float
+        Root mean square over the same windows [m].
+    envelope, relative_envelope : tuple of float
+        Smallest and largest peak of a single period over all eight windows [m].
+    period_multiple : int
+        Periods of the forcing after which a periodic motion repeats; 0 for others.
+    beat_period : float
+        Period of the strongest modulation of the pipe's amplitude [s]; NaN for a periodic motion.
+    frequencies : tuple of float
+        Base frequencies [rad/s]: Omega/p of a periodic motion; Omega and that of the beat for the others.
+    lyapunov : float
+        Largest Lyapunov exponent [1/s].
+    lyapunov_interval : tuple of float
+        95 % interval of it [1/s].
+    basin_fraction : float
+        Share of the uniform sample of initial states that ends here [-].
+    basin_interval : tuple of float
+        95 % interval of it (Clopper-Pearson) [-].
+    representative_state : ndarray, shape (2n,)
+        State (x_0, v_0, ...) on the attractor at phase 0 of the forcing [m, m/s].
+    from_rest : bool
+        Whether the motion from rest ends here.
+    outcome : Outcome
+        DONE, or why the motion is unsettled.
+    """
+
+    kind: str
+    frequency: float
+    detuning: float
+    pipe_peak: float
+    relative_peak: float
+    pipe_rms: float
+    relative_rms: float
+    envelope: tuple[float, float]
+    relative_envelope: tuple[float, float]
+    period_multiple: int
+    beat_period: float
+    frequencies: tuple[float, ...]
+    lyapunov: float
+    lyapunov_interval: tuple[float, float]
+    basin_fraction: float
+    basin_interval: tuple[float, float]
+    representative_state: Floats
+    from_rest: bool
+    outcome: Outcome
+
+
+@dataclass(frozen=True, eq=False)
+class AttractorSet(Sequence[Attractor]):
+    """All long-term motions found at one excitation frequency, the largest pipe peak first.
+
+    Attributes
+    ----------
+    attractors : tuple of Attractor
+    frequency, detuning : float
+        Of the excitation [rad/s].
+    region : dict of str to tuple of float
+        The region sampled.
+    samples : int
+        Number of initial states labelled.
+    seed : int
+    periods : int
+        Most periods a motion was followed.
+    outcome : Outcome
+        INTERRUPTED if the sample was not finished.
+    """
+
+    attractors: tuple[Attractor, ...]
+    frequency: float
+    detuning: float
+    region: Region
+    samples: int
+    seed: int
+    periods: int
+    outcome: Outcome
+
+    @overload
+    def __getitem__(self, index: int) -> Attractor: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> tuple[Attractor, ...]: ...
+
+    def __getitem__(self, index: int | slice) -> Attractor | tuple[Attractor, ...]:
+        """One attractor, or several."""
+        return self.attractors[index]
+
+    def __len__(self) -> int:
+        """Number of attractors."""
+        return len(self.attractors)
+
+    def __iter__(self) -> Iterator[Attractor]:
+        """Over the attractors, the largest pipe peak first."""
+        return iter(self.attractors)
+
+    @property
+    def missed_below(self) -> float:
+        """Basin fraction p above which an attractor was missed with probability below 5 %: 1 - 0.05^(1/N) [-]."""
+        return 1.0 - (1 - CONFIDENCE) ** (1 / self.samples) if self.samples else 1.0
+
+    @property
+    def statement(self) -> str:
+        """What the sample says about attractors it has not met."""
+        return (
+            f"An attractor with basin fraction above {100 * self.missed_below:.2g} % of the region was missed with "
+            f"probability below 5 % ({self.samples} initial states)."
+        )
+
+    def to_dataset(self) -> xr.Dataset:
+        """All attractors, labelled, along the dimension `attractor`."""
+        import xarray as xr
+
+        numbers = {name: self._column(name) for name in _NUMBERS}
+        variables = {name: labelled("attractor", values, *_NUMBERS[name]) for name, values in numbers.items()}
+        for name, (field, long_name, units) in _PAIRS.items():
+            variables[name] = labelled(("attractor", "bound"), self._column(field, 2), long_name, units)
+        kinds = np.array([KINDS.index(attractor.kind) for attractor in self], dtype=np.int8)
+        variables["kind"] = labelled("attractor", kinds, "kind of motion", "1", kinds=", ".join(KINDS))
+        width = self.attractors[0].representative_state.size if self.attractors else 0
+        variables["representative_state"] = labelled(
+            ("attractor", "component"), self._column("representative_state", width),
+            "state on the attractor, displacements and velocities in turn", "m, m/s",
+        )  # fmt: skip
+        return xr.Dataset(variables, attrs=self._attributes())
+
+    def _column(self, name: str, width: int = 0) -> Floats:
+        values = np.array([getattr(attractor, name) for attractor in self], dtype=float)
+        return values.reshape((len(self), width) if width else (len(self),))
+
+    def _attributes(self) -> dict[str, Any]:
+        from frahm import __version__
+
+        bounds = {f"region_{name}": list(pair) for name, pair in self.region.items()}
+        return {
+            "frahm": __version__, "frequency": self.frequency, "detuning": self.detuning, **bounds,
+            "samples": self.samples, "seed": self.seed, "periods": self.periods, "outcome": self.outcome.value,
+            "statement": self.statement,
+        }  # fmt: skip
+
+
+_NUMBERS = {
+    "pipe_peak": ("largest displacement of the pipe", "m"),
+    "relative_peak": ("largest displacement of the first element", "m"),
+    "pipe_rms": ("root mean square displacement of the pipe", "m"),
+    "relative_rms": ("root mean square displacement of the first element", "m"),
+    "period_multiple": ("periods of the forcing after which the motion repeats, 0 if it does not", "1"),
+    "beat_period": ("period of the strongest modulation", "s"),
+    "lyapunov": ("largest Lyapunov exponent", "1/s"),
+    "basin_fraction": ("share of the initial states that ends here", "1"),
+    "from_rest": ("whether the motion from rest ends here", "1"),
+}
+_PAIRS = {
+    "envelope": ("envelope", "smallest and largest peak of a period of the pipe", "m"),
+    "relative_envelope": ("relative_envelope", "smallest and largest peak of a period of the first element", "m"),
+    "lyapunov_interval": ("lyapunov_interval", "95 % interval of the largest Lyapunov exponent", "1/s"),
+    "basin_interval": ("basin_interval", "95 % interval of the basin fraction", "1"),
+}
+
+
+def clopper_pearson(hits: int, samples: int) -> tuple[float, float]:
+    """95 % interval of a probability from `hits` out of `samples`."""
+    tail = (1 - CONFIDENCE) / 2
+    low = float(beta.ppf(tail, hits, samples - hits + 1)) if hits else 0.0
+    high = float(beta.ppf(1 - tail, hits + 1, samples - hits)) if hits < samples else 1.0
+    return low, high

@@ -1,0 +1,98 @@
+"""Attractors that are no periodic orbits, known by the cloud of their strobes.
+
+Two long motions are on the same attractor if each comes back, again and again, to where the other has been. A motion
+that lingers near the ghost of an attractor does so too, for a while: a cloud is taken for an attractor only after eight
+motions started on it have stayed there for thousands of periods.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from frahm.arrays import Floats, frozen
+from frahm.attractors.orbits import Orbit
+from frahm.attractors.stroboscope import Stroboscope
+
+MEMBERS = 8
+STAY, WATCH = 1500, 1000  # periods a cloud must hold its members before it is believed, and while they are watched
+_STATIONARY, _STAYED, INSIDE = 0.8, 0.5, 0.9  # shares of strobes that must lie where others have been
+_LEAST_REACH = 0.25  # in standard deviations of the strobes: clouds nearer to each other than this count as one
+_QUERIES = 100  # strobes of a motion that are looked at
+
+
+@dataclass(frozen=True, eq=False)
+class Cloud:
+    """Attractor known by its strobes.
+
+    Attributes
+    ----------
+    scale : ndarray, shape (2n,)
+        Standard deviation of the strobes [m, m/s].
+    tree : cKDTree
+        Strobes over `scale`.
+    reach : float
+        Distance, over `scale`, within which a state counts as being where the attractor has been.
+    members : ndarray, shape (8, K, 2n)
+        Strobes of the eight motions that confirmed it.
+    seen : ndarray, shape (8, 6)
+        What they showed over the last K periods, see `Glimpse.seen`.
+    """
+
+    scale: Floats
+    tree: cKDTree
+    reach: float
+    members: Floats
+    seen: Floats
+
+    def share(self, strobes: Floats) -> Floats:
+        """Share of the strobes (N, K, 2n) of each motion that lie where the attractor has been, shape (N,)."""
+        return _share(self.tree, self.scale, self.reach, strobes)
+
+    def contains(self, strobes: Floats) -> np.ndarray:
+        """Which of the motions with these strobes (N, K, 2n) are on the attractor."""
+        return np.asarray(self.share(strobes) >= INSIDE)
+
+
+def looks_stationary(strobes: Floats) -> bool:
+    """Whether a motion's strobes (2 K, 2n) cover in their second half what they have covered in the first."""
+    half = len(strobes) // 2
+    tree, scale, reach = _tree(strobes[:half], 2.0, 0.95)
+    return bool(_share(tree, scale, reach, strobes[None, half:])[0] >= _STATIONARY)
+
+
+def confirmed(strobe: Stroboscope, strobes: Floats, orbits: Sequence[Orbit]) -> Cloud | None:
+    """Cloud of the attractor a motion with these strobes (K, 2n) is on, or None if motions started there leave it."""
+    starts = strobes[np.linspace(len(strobes) // 2, len(strobes) - 1, MEMBERS).astype(int)]
+    stayed = strobe.run(starts, STAY)
+    watched = strobe.run(stayed.states, WATCH, window=WATCH, strobes=WATCH)
+    if np.any(stayed.codes) or np.any(watched.codes):
+        return None
+    if any(np.any(orbit.contains(watched.states)) for orbit in orbits):
+        return None
+    tree, scale, reach = _tree(strobes, 2.0, 0.95)
+    if np.any(_share(tree, scale, reach, watched.strobes[:, -len(strobes) // 2 :]) < _STAYED):
+        return None
+    points = np.concatenate([strobes, watched.strobes.reshape(-1, strobes.shape[1])])
+    tree, scale, reach = _tree(points, 3.0, 0.99)
+    return Cloud(frozen(scale), tree, reach, watched.strobes, watched.seen)
+
+
+def _tree(points: Floats, factor: float, quantile: float) -> tuple[cKDTree, Floats, float]:
+    """Tree of the points (K, 2n), the scale they are divided by, and how far they may be from each other."""
+    scale = np.std(points, axis=0)
+    scale = np.maximum(scale, 1e-9 * np.max(np.abs(points), initial=1e-300, axis=0))
+    tree = cKDTree(points / scale)
+    nearest = tree.query(tree.data, k=2)[0][:, 1]
+    return tree, scale, max(factor * float(np.quantile(nearest, quantile)), _LEAST_REACH)
+
+
+def _share(tree: cKDTree, scale: Floats, reach: float, strobes: Floats) -> Floats:
+    if not len(strobes):
+        return np.zeros(0)
+    looked = strobes[:, :: max(1, strobes.shape[1] // _QUERIES)]
+    distance = tree.query((looked / scale).reshape(-1, looked.shape[2]), distance_upper_bound=reach)[0]
+    return np.asarray(np.mean(np.isfinite(distance).reshape(looked.shape[:2]), axis=1))

@@ -1,0 +1,219 @@
+"""`find_attractors`: every long-term motion at one excitation frequency, and how likely each is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from frahm.arrays import frozen
+from frahm.attractors.attractor import Attractor, AttractorSet, clopper_pearson
+from frahm.attractors.clouds import Cloud
+from frahm.attractors.modulation import beat_frequency, lyapunov
+from frahm.attractors.orbits import Orbit
+from frahm.attractors.regions import checked_region, default_region, sample_region
+from frahm.attractors.seeds import seed_states
+from frahm.attractors.settling import UNLABELLED, Settled, Settling, known_orbits
+from frahm.attractors.stroboscope import Stroboscope, stroboscope
+from frahm.errors import Outcome, check_count
+from frahm.harmonic_balance import PeriodicResponse, periodic_responses_of
+from frahm.systems import System, as_system, detuning_of, excitation_frequency
+
+if TYPE_CHECKING:
+    from frahm.case import Case
+
+PERIODS = 3000
+MOST_SAMPLES = 1_000_000
+_SCOUTS = 16  # of the sample, settled first: attractors they find are known to the rest
+_ALIKE = 0.02  # of the peak: clouds that differ less are one modulated response, whatever its beat is locked to
+_WATCH = 100  # periods over which an unsettled motion is watched
+
+
+def find_attractors(
+    case_or_system: Case | System | str,
+    *,
+    detuning: float | None = None,
+    frequency: float | None = None,
+    region: dict[str, tuple[float, float]] | None = None,
+    samples: int = 200,
+    seed: int = 1,
+    periods: int = PERIODS,
+    workers: int | None = None,
+) -> AttractorSet:
+    """Every long-term motion at one excitation frequency, with the share of initial states that leads to it.
+
+    Motions are started from a scrambled Sobol sample of the region, from rest, beside every unstable periodic response,
+    and from the jumps of the slow manifold; stable periodic responses are known from harmonic balance. A motion inside
+    the ball around a stable orbit in which the exact equations contract (a radius verified by sampled iterations) is
+    settled; one that keeps coming back to where it has been, and from where eight motions have not left within 2500
+    periods, is on a modulated or chaotic attractor. Modulated attractors whose peaks and rms agree within 2 %
+    of the peak are one: a beat can lock to the forcing in several ways.
+
+    Parameters
+    ----------
+    case_or_system : Case, System or str
+        What is excited.
+    detuning, frequency : float
+        sigma or Omega [rad/s]; give one of the two.
+    region : dict, optional
+        Ranges (lo, hi) of the initial x1 [m], v1 [m/s] (the output), z [m] and w [m/s] (the first element) at phase 0
+        of the forcing; one not named is 0, other elements are at rest relative to what they hang on. By default all
+        four, scaled by the largest periodic response, the host's resonance without elements and a gust.
+    samples : int
+        Initial states drawn from the region. Fractions come from these alone.
+    seed : int
+        Of the sample: the same seed gives the same answer on any number of threads.
+    periods : int
+        Periods after which a motion that has not settled is called unsettled.
+    workers : int, optional
+        Threads; one per core by default.
+
+    Returns
+    -------
+    AttractorSet
+        A sequence of `Attractor`, the largest pipe peak first. An interruption leaves what is labelled.
+
+    Raises
+    ------
+    ParameterError
+        For bad input. Motions that escape or cannot be integrated are values of kind "unsettled".
+    """
+    system = as_system(case_or_system)
+    W = excitation_frequency(system, detuning=detuning, frequency=frequency)
+    samples = check_count("samples", samples, at_least=0, at_most=MOST_SAMPLES)
+    seed = check_count("seed", seed, at_least=0)
+    periods = check_count("periods", periods, at_most=1_000_000)
+    strobe = stroboscope(system, W, None if workers is None else check_count("workers", workers, at_most=1024))
+    given = None if region is None else checked_region(system, region)
+    responses = periodic_responses_of(system, W, None)
+    box = default_region(system, W, responses) if given is None else given
+    starts = sample_region(system, box, samples, seed) if samples else np.zeros((0, 2 * system.size))
+    settling = begin_settling(strobe, responses, periods)
+    seeds = settling.settle(np.concatenate([seed_states(strobe, responses), starts[:_SCOUTS]]))
+    settled = settling.settle(starts, resume=not seeds.interrupted)
+    rest = settling.settle(np.zeros((1, 2 * system.size)), resume=not settled.interrupted)
+    counted = np.array([outcome is not Outcome.INTERRUPTED for outcome in settled.outcomes], dtype=bool)
+    found = describe(settling, settled, counted, rest=int(rest.labels[0]))
+    return AttractorSet(
+        attractors=tuple(attractor for _, attractor in found),
+        frequency=W,
+        detuning=float(detuning_of(system, W)),
+        region=box,
+        samples=int(np.count_nonzero(counted)),
+        seed=seed,
+        periods=periods,
+        outcome=Outcome.DONE if np.all(counted) and not rest.interrupted else Outcome.INTERRUPTED,
+    )
+
+
+def begin_settling(strobe: Stroboscope, responses: Sequence[PeriodicResponse], periods: int) -> Settling:
+    """Settling that knows the stable periodic responses."""
+    orbits = known_orbits(strobe, [response.state for response in responses if response.stable])
+    return Settling(strobe, periods, [orbit for orbit in orbits if orbit is not None])
+
+
+def describe(
+    settling: Settling, settled: Settled, counted: np.ndarray, rest: int = UNLABELLED
+) -> list[tuple[list[int], Attractor]]:
+    """Attractors with the labels each stands for, the largest pipe peak first; the unsettled ones have no label."""
+    total = int(np.count_nonzero(counted))
+    found: list[tuple[list[int], Attractor]] = []
+    for group in _groups(settling.known):
+        hits = int(np.count_nonzero(np.isin(settled.labels, group) & counted))
+        chance = _chance(hits, total)
+        first = settling.known[group[0]]
+        looks: dict[str, Any] = (
+            _orbit_looks(settling.strobe, first)
+            if isinstance(first, Orbit)
+            else _cloud_looks(
+                settling.strobe, [item for item in (settling.known[i] for i in group) if isinstance(item, Cloud)]
+            )
+        )
+        found.append((group, Attractor(**_where(settling.strobe), **looks, **chance, from_rest=rest in group)))
+    found += [([], lost) for lost in _unsettled(settling.strobe, settled, counted, total)]
+    return sorted(found, key=lambda item: -np.nan_to_num(item[1].pipe_peak, nan=-1.0, posinf=np.inf))
+
+
+def _groups(known: Sequence[Orbit | Cloud]) -> list[list[int]]:
+    """Indices of known attractors that count as one."""
+    groups: list[list[int]] = []
+    for index, item in enumerate(known):
+        for group in groups:
+            first = known[group[0]]
+            if isinstance(item, Cloud) and isinstance(first, Cloud) and _alike(item, first):
+                group.append(index)
+                break
+        else:
+            groups.append([index])
+    return groups
+
+
+def _alike(a: Cloud, b: Cloud) -> bool:
+    """Whether peaks and rms agree within 2 % of the peak, or within their scatter between windows."""
+    (mean_a, spread_a), (mean_b, spread_b) = ((np.mean(c.seen, axis=0), np.std(c.seen, axis=0, ddof=1)) for c in (a, b))
+    peaks = np.repeat(np.maximum(mean_a, mean_b)[[0, 3]], 3)
+    return bool(np.all(np.abs(mean_a - mean_b) <= np.maximum(_ALIKE * peaks, spread_a + spread_b)))
+
+
+def _where(strobe: Stroboscope) -> dict[str, Any]:
+    return {"frequency": strobe.frequency, "detuning": float(detuning_of(strobe.system, strobe.frequency))}
+
+
+def _chance(hits: int, total: int) -> dict[str, Any]:
+    return {"basin_fraction": hits / total if total else float("nan"), "basin_interval": clopper_pearson(hits, total)}
+
+
+def _orbit_looks(strobe: Stroboscope, orbit: Orbit) -> dict[str, Any]:
+    p = orbit.multiple
+    seen = strobe.run(orbit.states[:1], p, window=p).seen[0]
+    rate = float(np.log(max(np.max(np.abs(orbit.multipliers)), 1e-300))) / (p * strobe.period)
+    return {
+        "kind": "periodic", "pipe_peak": seen[0], "relative_peak": seen[3], "pipe_rms": seen[2],
+        "relative_rms": seen[5], "envelope": (seen[1], seen[0]), "relative_envelope": (seen[4], seen[3]),
+        "period_multiple": p, "beat_period": float("nan"), "frequencies": (strobe.frequency / p,), "lyapunov": rate,
+        "lyapunov_interval": (rate, rate), "representative_state": orbit.states[0], "outcome": Outcome.DONE,
+    }  # fmt: skip
+
+
+def _cloud_looks(strobe: Stroboscope, clouds: Sequence[Cloud]) -> dict[str, Any]:
+    seen, members = np.concatenate([cloud.seen for cloud in clouds]), clouds[0].members
+    middle = np.median(seen, axis=0)
+    exponent, beat = lyapunov(strobe, members[:, -1]), beat_frequency(strobe, members)
+    return {
+        "kind": "chaotic" if exponent.chaotic else "quasi-periodic",
+        "pipe_peak": middle[0], "relative_peak": middle[3],
+        "pipe_rms": float(np.sqrt(np.mean(seen[:, 2] ** 2))), "relative_rms": float(np.sqrt(np.mean(seen[:, 5] ** 2))),
+        "envelope": (np.min(seen[:, 1]), np.max(seen[:, 0])),
+        "relative_envelope": (np.min(seen[:, 4]), np.max(seen[:, 3])),
+        "period_multiple": 0, "beat_period": 2 * np.pi / beat, "frequencies": (strobe.frequency, beat),
+        "lyapunov": exponent.value, "lyapunov_interval": exponent.interval,
+        "representative_state": frozen(members[0, -1]), "outcome": Outcome.DONE,
+    }  # fmt: skip
+
+
+def _unsettled(strobe: Stroboscope, settled: Settled, counted: np.ndarray, total: int) -> list[Attractor]:
+    """One entry for every reason a motion of the sample has no label."""
+    lost = []
+    reasons = [
+        outcome if label == UNLABELLED else None
+        for outcome, label in zip(settled.outcomes, settled.labels, strict=True)
+    ]
+    for reason in (Outcome.DIVERGED, Outcome.NOT_CONVERGED, Outcome.STEP_LIMIT, Outcome.STEP_TOO_SMALL):
+        members = np.flatnonzero([found is reason for found in reasons] & counted)
+        if not members.size:
+            continue
+        seen = np.full((1, 6), np.inf if reason is Outcome.DIVERGED else np.nan)
+        if reason is Outcome.NOT_CONVERGED:
+            seen = strobe.run(settled.states[members], _WATCH, window=_WATCH).seen
+        nan = float("nan")
+        lost.append(Attractor(
+            kind="unsettled", **_where(strobe), pipe_peak=np.max(seen[:, 0]), relative_peak=np.max(seen[:, 3]),
+            pipe_rms=np.max(seen[:, 2]), relative_rms=np.max(seen[:, 5]),
+            envelope=(np.min(seen[:, 1]), np.max(seen[:, 0])),
+            relative_envelope=(np.min(seen[:, 4]), np.max(seen[:, 3])),
+            period_multiple=0, beat_period=nan, frequencies=(strobe.frequency,), lyapunov=nan,
+            lyapunov_interval=(nan, nan), **_chance(members.size, total),
+            representative_state=frozen(settled.states[members[0]]), from_rest=False, outcome=reason,
+        ))  # fmt: skip
+    return lost
