@@ -273,6 +273,9 @@ def _births_outside(search: Search, track: Track, inside: np.ndarray) -> list[tu
         if inside[rows[0]]:
             continue
         rows = np.arange(max(rows[0] - 1, 0), min(rows[-1] + 2, len(inside)))
+        rows = rows[(track.frequency[rows] >= search.outer[0]) & (track.frequency[rows] <= search.outer[1])]
+        if len(rows) < 2:
+            continue
         part = Track(True, track.ys[rows], track.ts[rows], track.Hs[rows], track.truncations[rows],
                      *_described(search, True, track.ys[rows], track.Hs[rows]), False, ())  # fmt: skip
         for i in np.flatnonzero(is_eventful(search, part)):
