@@ -32,6 +32,7 @@ _AUTO_HARMONICS = 101
 _MOST_POINTS = 6000
 _LONGEST = 0.02
 _SEED_FREQUENCIES = 17
+_QUICK = 0.2  # way of a multiplier near the unit circle from point to point that asks for a point between
 _GRID = 401
 
 
@@ -425,7 +426,7 @@ def _on_edge(search: Search, track: Track, i: int, edge: float) -> tuple[Floats,
 
 
 def _uncover(search: Search, track: Track) -> None:
-    """Insert points where a multiplier may leave the unit circle and come back between two points."""
+    """Insert points where a multiplier may leave the unit circle and come back between two points, or moves far."""
     for _ in range(6):
         logs = np.log(np.maximum(np.abs(track.multipliers), 1e-300))
         left, mid, right = logs[:-2], logs[1:-1], logs[2:]
@@ -435,7 +436,10 @@ def _uncover(search: Search, track: Track) -> None:
         crossed = (np.sign(summit) != np.sign(mid)) | (np.abs(summit) < 0.1 * np.abs(bend))
         hidden = ((mid - left) * (mid - right) > 0) & crossed & (np.abs(bend) > 1e-9)
         rows = np.flatnonzero(hidden.any(axis=1)) + 1
-        wanted = np.unique(np.concatenate([rows - 1, rows])) if rows.size else rows
+        m = track.multipliers
+        leap = np.min(np.abs(m[:-1, :, None] - m[1:, None, :]), axis=2)
+        quick = np.flatnonzero(((leap > _QUICK) & (np.abs(m[:-1]) > 0.9)).any(axis=1))
+        wanted = np.unique(np.concatenate([rows - 1, rows, quick]))
         wanted = wanted[track.frequency[wanted] != track.frequency[wanted + 1]]  # not across a gap between pieces
         if not _insert(search, track, wanted):
             return
