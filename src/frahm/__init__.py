@@ -33,6 +33,9 @@ _PUBLIC = {
     "find_attractors": "frahm.attractors",
     "Attractor": "frahm.attractors",
     "AttractorSet": "frahm.attractors",
+    "basin_map": "frahm.attractors",
+    "worst_case": "frahm.attractors",
+    "WorstCase": "frahm.attractors",
 }
 
 __all__ = ["__version__", *_PUBLIC]

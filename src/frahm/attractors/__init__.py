@@ -1,6 +1,8 @@
 """Room `attractors`: every long-term motion at a parameter point, how likely each is, and the worst of them."""
 
 from frahm.attractors.attractor import Attractor, AttractorSet
+from frahm.attractors.basins import basin_map
 from frahm.attractors.finding import find_attractors
+from frahm.attractors.worst import WorstCase, worst_case
 
-__all__ = ["Attractor", "AttractorSet", "find_attractors"]
+__all__ = ["Attractor", "AttractorSet", "WorstCase", "basin_map", "find_attractors", "worst_case"]

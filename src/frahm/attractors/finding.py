@@ -10,9 +10,9 @@ import numpy as np
 from frahm.arrays import frozen
 from frahm.attractors.attractor import Attractor, AttractorSet, clopper_pearson
 from frahm.attractors.clouds import Cloud
-from frahm.attractors.modulation import beat_frequency, lyapunov
+from frahm.attractors.modulation import UNKNOWN, beat_frequency, lyapunov
 from frahm.attractors.orbits import Orbit
-from frahm.attractors.regions import checked_region, default_region, sample_region
+from frahm.attractors.regions import Region, checked_region, default_region, sample_region
 from frahm.attractors.seeds import seed_states
 from frahm.attractors.settling import UNLABELLED, Settled, Settling, known_orbits
 from frahm.attractors.stroboscope import Stroboscope, stroboscope
@@ -84,22 +84,36 @@ def find_attractors(
     samples = check_count("samples", samples, at_least=0, at_most=MOST_SAMPLES)
     seed = check_count("seed", seed, at_least=0)
     periods = check_count("periods", periods, at_most=1_000_000)
-    strobe = stroboscope(system, W, None if workers is None else check_count("workers", workers, at_most=1024))
+    workers = None if workers is None else check_count("workers", workers, at_most=1024)
     given = None if region is None else checked_region(system, region)
     responses = periodic_responses_of(system, W, None)
     box = default_region(system, W, responses) if given is None else given
-    starts = sample_region(system, box, samples, seed) if samples else np.zeros((0, 2 * system.size))
+    return attractors_from(stroboscope(system, W, workers), responses, box, samples, seed, periods)
+
+
+def attractors_from(
+    strobe: Stroboscope,
+    responses: Sequence[PeriodicResponse],
+    region: Region,
+    samples: int,
+    seed: int,
+    periods: int,
+    exponents: bool = True,
+) -> AttractorSet:
+    """Attractors at one frequency whose periodic responses are known; without `exponents` no motion is called chaotic."""
+    system = strobe.system
+    starts = sample_region(system, region, samples, seed) if samples else np.zeros((0, 2 * system.size))
     settling = begin_settling(strobe, responses, periods)
     seeds = settling.settle(np.concatenate([seed_states(strobe, responses), starts[:_SCOUTS]]))
     settled = settling.settle(starts, resume=not seeds.interrupted)
     rest = settling.settle(np.zeros((1, 2 * system.size)), resume=not settled.interrupted)
     counted = np.array([outcome is not Outcome.INTERRUPTED for outcome in settled.outcomes], dtype=bool)
-    found = describe(settling, settled, counted, rest=int(rest.labels[0]))
+    found = describe(settling, settled, counted, int(rest.labels[0]), exponents)
     return AttractorSet(
         attractors=tuple(attractor for _, attractor in found),
-        frequency=W,
-        detuning=float(detuning_of(system, W)),
-        region=box,
+        frequency=strobe.frequency,
+        detuning=float(detuning_of(system, strobe.frequency)),
+        region=region,
         samples=int(np.count_nonzero(counted)),
         seed=seed,
         periods=periods,
@@ -114,7 +128,7 @@ def begin_settling(strobe: Stroboscope, responses: Sequence[PeriodicResponse], p
 
 
 def describe(
-    settling: Settling, settled: Settled, counted: np.ndarray, rest: int = UNLABELLED
+    settling: Settling, settled: Settled, counted: np.ndarray, rest: int = UNLABELLED, exponents: bool = True
 ) -> list[tuple[list[int], Attractor]]:
     """Attractors with the labels each stands for, the largest pipe peak first; the unsettled ones have no label."""
     total = int(np.count_nonzero(counted))
@@ -123,13 +137,11 @@ def describe(
         hits = int(np.count_nonzero(np.isin(settled.labels, group) & counted))
         chance = _chance(hits, total)
         first = settling.known[group[0]]
-        looks: dict[str, Any] = (
-            _orbit_looks(settling.strobe, first)
-            if isinstance(first, Orbit)
-            else _cloud_looks(
-                settling.strobe, [item for item in (settling.known[i] for i in group) if isinstance(item, Cloud)]
-            )
-        )
+        if isinstance(first, Orbit):
+            looks = _orbit_looks(settling.strobe, first)
+        else:
+            clouds = [item for item in (settling.known[i] for i in group) if isinstance(item, Cloud)]
+            looks = _cloud_looks(settling.strobe, clouds, exponents)
         found.append((group, Attractor(**_where(settling.strobe), **looks, **chance, from_rest=rest in group)))
     found += [([], lost) for lost in _unsettled(settling.strobe, settled, counted, total)]
     return sorted(found, key=lambda item: -np.nan_to_num(item[1].pipe_peak, nan=-1.0, posinf=np.inf))
@@ -176,10 +188,11 @@ def _orbit_looks(strobe: Stroboscope, orbit: Orbit) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _cloud_looks(strobe: Stroboscope, clouds: Sequence[Cloud]) -> dict[str, Any]:
+def _cloud_looks(strobe: Stroboscope, clouds: Sequence[Cloud], exponents: bool) -> dict[str, Any]:
     seen, members = np.concatenate([cloud.seen for cloud in clouds]), clouds[0].members
     middle = np.median(seen, axis=0)
-    exponent, beat = lyapunov(strobe, members[:, -1]), beat_frequency(strobe, members)
+    exponent = lyapunov(strobe, members[:, -1]) if exponents else UNKNOWN
+    beat = beat_frequency(strobe, members)
     return {
         "kind": "chaotic" if exponent.chaotic else "quasi-periodic",
         "pipe_peak": middle[0], "relative_peak": middle[3],

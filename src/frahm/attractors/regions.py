@@ -59,35 +59,40 @@ def check_names(system: System, argument: str, names: Sequence[Any]) -> None:
             raise ParameterError(argument, name, "one of " + ", ".join(known), hint=hint)
 
 
-def checked_region(system: System, region: Any) -> Region:
+def checked_region(system: System, region: Any, argument: str = "region") -> Region:
     """Region with checked names and bounds lo <= hi."""
     allowed = "a region such as {'x1': (-0.08, 0.08), 'v1': (-0.4, 0.4)} over " + ", ".join(NAMES)
     if not isinstance(region, Mapping) or not region:
-        raise ParameterError("region", region, allowed)
-    check_names(system, "region", list(region))
+        raise ParameterError(argument, region, allowed)
+    check_names(system, argument, list(region))
     checked = {}
     for name, bounds in region.items():
         try:
             lo, hi = bounds
         except (TypeError, ValueError):
-            raise ParameterError(f"region[{name!r}]", bounds, f"two numbers (lo, hi) [{UNITS[name]}]") from None
-        lo = check_number(f"region[{name!r}][0]", lo, unit=UNITS[name])
-        hi = check_number(f"region[{name!r}][1]", hi, unit=UNITS[name])
+            raise ParameterError(f"{argument}[{name!r}]", bounds, f"two numbers (lo, hi) [{UNITS[name]}]") from None
+        lo = check_number(f"{argument}[{name!r}][0]", lo, unit=UNITS[name])
+        hi = check_number(f"{argument}[{name!r}][1]", hi, unit=UNITS[name])
         if not lo <= hi or not np.isfinite(hi - lo):
-            raise ParameterError(f"region[{name!r}]", (lo, hi), f"two numbers lo <= hi [{UNITS[name]}]")
+            raise ParameterError(f"{argument}[{name!r}]", (lo, hi), f"two numbers lo <= hi [{UNITS[name]}]")
         checked[name] = (lo, hi)
     return checked
 
 
 def default_region(system: System, frequency: float, responses: Sequence[PeriodicResponse]) -> Region:
+    """Region scaled by the largest of the periodic responses, see `region_for`."""
+    pipe = max([response.pipe_peak for response in responses], default=0.0)
+    stroke = max([response.relative_peak for response in responses], default=0.0)
+    return region_for(system, frequency, pipe, stroke)
+
+
+def region_for(system: System, frequency: float, pipe: float, stroke: float) -> Region:
     """What the structure may do before it is left to itself, all four names.
 
-    x1 reaches as far as the largest of the periodic responses and the host at resonance without its elements, plus
-    what a gust adds that holds the amplitude of the force for half a period; z as far as the largest relative peak.
+    x1 reaches as far as the larger of `pipe` and the host at resonance without its elements, plus what a gust adds that
+    holds the amplitude of the force for half a period; z as far as `stroke` [m].
     """
     gust = np.pi * float(np.max(np.abs(np.linalg.solve(system.mass, system.forcing)))) / frequency**2
-    pipe = max([response.pipe_peak for response in responses], default=0.0)
-    stroke = max([response.relative_peak for response in responses if np.isfinite(response.relative_peak)], default=0.0)
     pipe = max(pipe, _host_resonance(system)) + gust or 1.0
     region = {"x1": (-pipe, pipe), "v1": (-pipe * frequency, pipe * frequency)}
     if lift(system)[1]:

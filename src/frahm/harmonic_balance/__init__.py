@@ -2,7 +2,7 @@
 
 from frahm.harmonic_balance.branches import Search, Track, begin, find_branches
 from frahm.harmonic_balance.linear import is_linear, linear_growth, linear_response
-from frahm.harmonic_balance.responses import PeriodicResponse, periodic_responses_of
+from frahm.harmonic_balance.responses import PeriodicResponse, periodic_responses_of, responses_on
 
 __all__ = [
     "PeriodicResponse",
@@ -14,4 +14,5 @@ __all__ = [
     "linear_growth",
     "linear_response",
     "periodic_responses_of",
+    "responses_on",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 from frahm.arrays import Complexes, Floats, frozen
 from frahm.harmonic_balance.branches import Search, Track, begin, find_branches
 from frahm.harmonic_balance.condensation import unknowns
+from frahm.harmonic_balance.events import unstable_count
 from frahm.harmonic_balance.floquet import monodromy, variation_of
 from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic
 from frahm.harmonic_balance.linear import is_linear, linear_exponents, linear_response
@@ -34,7 +36,7 @@ class PeriodicResponse:
     multipliers : ndarray of complex, shape (2n,)
         Floquet multipliers over one period, by descending modulus.
     stable : bool
-        Whether all multipliers lie inside the unit circle.
+        Whether no multiplier lies outside the unit circle.
     pipe_peak, relative_peak : float
         max |x_out| and max |z| over a period [m].
     pipe_amplitude, relative_amplitude : float
@@ -83,8 +85,13 @@ def periodic_responses_of(system: System, frequency: float, harmonics: int | Non
     if is_linear(system) or not np.any(system.forcing):
         return [_linear(system, frequency)]
     search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
+    return responses_on(search, find_branches(search), frequency)
+
+
+def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> list[PeriodicResponse]:
+    """Periodic responses at Omega = `frequency` [rad/s] on branches already followed, by ascending relative amplitude."""
     found: list[PeriodicResponse] = []
-    for track in find_branches(search):
+    for track in tracks:
         for X, H in _crossings(search, track, frequency):
             response = _response(search, track.odd, X, H, frequency)
             if not any(_same(response, other) for other in found):
@@ -147,7 +154,7 @@ def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> Periodi
         frequency=W,
         harmonics={k: frozen(values[2:], complex) for k, values in rows.items()},
         multipliers=frozen(multipliers, complex),
-        stable=bool(np.all(np.abs(multipliers) < 1)),
+        stable=bool(unstable_count(multipliers) == 0),
         pipe_peak=peaks[0],
         relative_peak=peaks[1],
         pipe_amplitude=float(abs(rows[1][0])),
@@ -172,7 +179,7 @@ def _linear(system: System, W: float) -> PeriodicResponse:
         frequency=W,
         harmonics={1: frozen(X, complex)},
         multipliers=frozen(multipliers[order], complex),
-        stable=bool(np.all(np.abs(multipliers) < 1)),
+        stable=bool(unstable_count(multipliers) == 0),
         pipe_peak=pipe,
         relative_peak=relative,
         pipe_amplitude=pipe,

@@ -1,0 +1,272 @@
+"""`worst_case`: the largest motion over a window of the excitation frequency, all attractors considered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from frahm.attractors.attractor import Attractor, AttractorSet
+from frahm.attractors.finding import MOST_SAMPLES, PERIODS, attractors_from
+from frahm.attractors.regions import Region, checked_region, region_for
+from frahm.attractors.stroboscope import stroboscope
+from frahm.errors import Outcome, check_count, check_number
+from frahm.harmonic_balance import (
+    PeriodicResponse,
+    begin,
+    find_branches,
+    is_linear,
+    periodic_responses_of,
+    responses_on,
+)
+from frahm.response import ResponseCurve, frequency_response
+from frahm.systems import System, as_system, detuning_of, excitation_window
+
+if TYPE_CHECKING:
+    from frahm.case import Case
+
+_SPREAD = 9  # frequencies spread over the window
+_SPECIAL = 10  # special points of the response curve looked at on both sides, the largest first
+_BESIDE = 1e-3  # of the window: how far beside a special point
+_CLOSE = 5e-4  # of the window: frequencies nearer than this are one
+_FINE = 5e-3  # of the window: how near its neighbours the worst is looked at in the end
+_ROUNDS = 8
+
+Size = Callable[[Attractor], float]
+
+
+@dataclass(frozen=True, eq=False)
+class WorstCase:
+    """The worst over a window, and where it was looked for.
+
+    Attributes
+    ----------
+    pipe_peak : float
+        Largest pipe peak [m] of an attractor with a basin fraction of at least `min_basin`.
+    relative_peak : float
+        Largest peak of the first element [m], which another attractor at another frequency may cause.
+    detuning, frequency : float
+        Where the pipe peak occurs [rad/s].
+    attractor : Attractor
+        What causes the pipe peak.
+    relative_detuning, relative_frequency : float
+        Where the relative peak occurs [rad/s].
+    not_excluded : float
+        Largest pipe peak [m] of an attractor whose 95 % interval of the basin fraction reaches `min_basin`.
+    verified : bool
+        Whether nothing speaks against it; what does is in `unverified`.
+    unverified : tuple of str
+        Sentences: motions that did not settle, an interruption, a worst that was not bracketed finely.
+    surveys : tuple of AttractorSet
+        All frequencies looked at, ascending.
+    min_basin : float
+    """
+
+    pipe_peak: float
+    relative_peak: float
+    detuning: float
+    frequency: float
+    attractor: Attractor
+    relative_detuning: float
+    relative_frequency: float
+    not_excluded: float
+    verified: bool
+    unverified: tuple[str, ...]
+    surveys: tuple[AttractorSet, ...]
+    min_basin: float
+
+
+def worst_case(
+    case_or_system: Case | System | str,
+    *,
+    detuning: tuple[float, float] | None = None,
+    frequency: tuple[float, float] | None = None,
+    samples: int = 100,
+    min_basin: float = 0.01,
+    seed: int = 1,
+    region: dict[str, tuple[float, float]] | None = None,
+    periods: int = PERIODS,
+    workers: int | None = None,
+) -> WorstCase:
+    """Largest pipe and relative peak over all attractors with a basin fraction of at least `min_basin`.
+
+    The frequencies looked at are spread over the window, stand beside the special points of the exact response curve
+    and at its stable maxima; around the worst they are then halved until it is known to 0.5 % of the window.
+
+    Parameters
+    ----------
+    case_or_system : Case, System or str
+        What is excited.
+    detuning, frequency : tuple of float
+        Window (lo, hi) of sigma or Omega [rad/s]; give one of the two.
+    samples : int
+        Initial states at every frequency.
+    min_basin : float
+        Least basin fraction in the sample that counts [-].
+    seed : int
+        Of the sample.
+    region : dict, optional
+        Of the initial states, see `find_attractors`; by default one region for the whole window, scaled by the largest
+        stable periodic response in it.
+    periods : int
+        Periods after which a motion that has not settled is given up; it counts as it is, as unverified.
+    workers : int, optional
+        Threads; one per core by default.
+
+    Returns
+    -------
+    WorstCase
+
+    Raises
+    ------
+    ParameterError
+        For bad input.
+    """
+    system = as_system(case_or_system)
+    lo, hi = excitation_window(system, detuning=detuning, frequency=frequency)
+    samples = check_count("samples", samples, at_most=MOST_SAMPLES)
+    min_basin = check_number("min_basin", min_basin, at_least=0.0, at_most=1.0)
+    seed = check_count("seed", seed, at_least=0)
+    periods = check_count("periods", periods, at_most=1_000_000)
+    workers = None if workers is None else check_count("workers", workers, at_most=1024)
+    given = None if region is None else checked_region(system, region)
+    curve = frequency_response(system, frequency=(lo, hi))
+    box = given or _region_of(system, curve, hi)
+    responses_at = _responses(system, lo, hi)
+    surveys: dict[float, AttractorSet] = {}
+
+    def look(W: float, exponents: bool = False) -> None:
+        surveys[W] = attractors_from(
+            stroboscope(system, W, workers), responses_at(W), box, samples, seed, periods, exponents
+        )
+
+    interrupted = False
+    try:
+        for W in _first_frequencies(curve, lo, hi):
+            look(W)
+        _refine(surveys, look, lo, hi, min_basin)
+        look(_largest(surveys, _pipe, min_basin)[0], exponents=True)
+    except KeyboardInterrupt:
+        interrupted = True
+        if not surveys:
+            raise
+    return _verdict(system, curve, surveys, lo, hi, min_basin, interrupted)
+
+
+def _pipe(attractor: Attractor) -> float:
+    return attractor.pipe_peak
+
+
+def _relative(attractor: Attractor) -> float:
+    return attractor.relative_peak
+
+
+def _responses(system: System, lo: float, hi: float) -> Callable[[float], list[PeriodicResponse]]:
+    """Periodic responses at a frequency of the window, whose branches are followed once."""
+    if is_linear(system) or not np.any(system.forcing):
+        return lambda W: periodic_responses_of(system, W, None)
+    search = begin(system, lo, hi, None)
+    tracks = find_branches(search)
+    return lambda W: responses_on(search, tracks, W)
+
+
+def _region_of(system: System, curve: ResponseCurve, frequency: float) -> Region:
+    pipe, stroke = (
+        float(np.max(peaks[curve.stable & np.isfinite(peaks)], initial=0.0))
+        for peaks in (curve.pipe_peak, curve.relative_peak)
+    )
+    return region_for(system, frequency, pipe, stroke)
+
+
+def _first_frequencies(curve: ResponseCurve, lo: float, hi: float) -> list[float]:
+    """Frequencies to start with, ascending, none too near to another."""
+    width = hi - lo
+    wanted = [lo, hi, *np.linspace(lo, hi, _SPREAD)[1:-1]]
+    for peaks in (curve.pipe_peak, curve.relative_peak):
+        for branch in np.unique(curve.branch):
+            here = np.flatnonzero((curve.branch == branch) & curve.stable & np.isfinite(peaks))
+            if here.size:
+                wanted.append(float(curve.frequency[here[np.argmax(peaks[here])]]))
+    largest_first = sorted(curve.special_points, key=lambda point: -point.pipe_peak)
+    for point in largest_first[:_SPECIAL]:
+        wanted += [point.frequency - _BESIDE * width, point.frequency + _BESIDE * width]
+    chosen: list[float] = []
+    for W in wanted:
+        if lo <= W <= hi and all(abs(W - other) > _CLOSE * width for other in chosen):
+            chosen.append(float(W))
+    return sorted(chosen)
+
+
+def _refine(
+    surveys: dict[float, AttractorSet], look: Callable[[float], None], lo: float, hi: float, min_basin: float
+) -> None:
+    """Halve the gaps beside the worst until they are fine."""
+    for _ in range(_ROUNDS):
+        middles = {
+            middle
+            for size in (_pipe, _relative)
+            for middle in _gaps(surveys, _largest(surveys, size, min_basin)[0], _FINE * (hi - lo))
+        }
+        if not middles:
+            return
+        for W in sorted(middles):
+            look(W)
+
+
+def _gaps(surveys: Iterable[float], worst: float, fine: float) -> list[float]:
+    """Middles of the gaps beside the worst that are wider than `fine`."""
+    grid = sorted(surveys)
+    at = grid.index(worst)
+    return [
+        0.5 * (worst + grid[other])
+        for other in (at - 1, at + 1)
+        if 0 <= other < len(grid) and abs(grid[other] - worst) > fine
+    ]
+
+
+def _largest(surveys: dict[float, AttractorSet], size: Size, min_basin: float) -> tuple[float, Attractor]:
+    """Frequency and attractor of the largest motion that counts."""
+    counting = [
+        (W, attractor)
+        for W in sorted(surveys)
+        for attractor in surveys[W]
+        if attractor.basin_fraction >= min_basin and not np.isnan(size(attractor))
+    ]
+    if not counting:
+        counting = [(W, attractor) for W in sorted(surveys) for attractor in surveys[W]]
+    return max(counting, key=lambda item: size(item[1]))
+
+
+def _verdict(
+    system: System, curve: ResponseCurve, surveys: dict[float, AttractorSet], lo: float, hi: float, min_basin: float,
+    interrupted: bool,
+) -> WorstCase:  # fmt: skip
+    W, worst = _largest(surveys, _pipe, min_basin)
+    W_relative, stroke = _largest(surveys, _relative, min_basin)
+    doubts = [*curve.unverified]
+    if interrupted or any(survey.outcome is Outcome.INTERRUPTED for survey in surveys.values()):
+        doubts.append(Outcome.INTERRUPTED.value)
+    for at in sorted(surveys):
+        for attractor in surveys[at]:
+            if attractor.kind == "unsettled" and attractor.basin_fraction >= min_basin:
+                share = f"{100 * attractor.basin_fraction:.2g} % of the motions at Omega = {at:.6g} rad/s"
+                doubts.append(f"{share} are unsettled: {attractor.outcome.value}")
+    if any(_gaps(surveys, at, _FINE * (hi - lo)) for at in (W, W_relative)):
+        doubts.append("The worst was not bracketed to 0.5 % of the window.")
+    possible = [a.pipe_peak for s in surveys.values() for a in s if a.basin_interval[1] >= min_basin]
+    return WorstCase(
+        pipe_peak=worst.pipe_peak,
+        relative_peak=stroke.relative_peak,
+        detuning=float(detuning_of(system, W)),
+        frequency=W,
+        attractor=worst,
+        relative_detuning=float(detuning_of(system, W_relative)),
+        relative_frequency=W_relative,
+        not_excluded=float(np.nanmax([*possible, worst.pipe_peak])),
+        verified=not doubts,
+        unverified=tuple(doubts),
+        surveys=tuple(surveys[at] for at in sorted(surveys)),
+        min_basin=min_basin,
+    )
