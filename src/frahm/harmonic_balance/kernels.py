@@ -38,8 +38,12 @@ def sample_count(pb, H, odd):
 
 @kernel
 def inverse(c):
-    """1/c without the guards against overflow that a general complex division carries."""
-    scale = 1.0 / (c.real * c.real + c.imag * c.imag)
+    """1/c without the guards against overflow that a general complex division carries; 0 for 0.
+
+    c = 0 is a structure that moves freely at harmonic 0: nothing acts through that pole.
+    """
+    size = c.real * c.real + c.imag * c.imag
+    scale = 1.0 / size if size > 0.0 else 0.0
     return complex(c.real * scale, -c.imag * scale)
 
 
