@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frahm.arrays import frozen
+from frahm.arrays import Floats, frozen
 from frahm.attractors.attractor import Attractor, AttractorSet, clopper_pearson
 from frahm.attractors.clouds import Cloud
 from frahm.attractors.modulation import UNKNOWN, beat_frequency, lyapunov
@@ -100,7 +100,7 @@ def attractors_from(
     periods: int,
     exponents: bool = True,
 ) -> AttractorSet:
-    """Attractors at one frequency whose periodic responses are known; without `exponents` no motion is called chaotic."""
+    """Attractors where the periodic responses are known; without `exponents` no motion is called chaotic."""
     system = strobe.system
     starts = sample_region(system, region, samples, seed) if samples else np.zeros((0, 2 * system.size))
     settling = begin_settling(strobe, responses, periods)
@@ -178,55 +178,77 @@ def _chance(hits: int, total: int) -> dict[str, Any]:
 
 def _orbit_looks(strobe: Stroboscope, orbit: Orbit) -> dict[str, Any]:
     p = orbit.multiple
-    seen = strobe.run(orbit.states[:1], p, window=p).seen[0]
+    seen = strobe.run(orbit.states[:1], p, window=p).seen
     rate = float(np.log(max(np.max(np.abs(orbit.multipliers)), 1e-300))) / (p * strobe.period)
     return {
-        "kind": "periodic", "pipe_peak": seen[0], "relative_peak": seen[3], "pipe_rms": seen[2],
-        "relative_rms": seen[5], "envelope": (seen[1], seen[0]), "relative_envelope": (seen[4], seen[3]),
-        "period_multiple": p, "beat_period": float("nan"), "frequencies": (strobe.frequency / p,), "lyapunov": rate,
-        "lyapunov_interval": (rate, rate), "representative_state": orbit.states[0], "outcome": Outcome.DONE,
-    }  # fmt: skip
+        "kind": "periodic",
+        **_sizes(seen),
+        "period_multiple": p,
+        "beat_period": float("nan"),
+        "frequencies": (strobe.frequency / p,),
+        "lyapunov": rate,
+        "lyapunov_interval": (rate, rate),
+        "representative_state": orbit.states[0],
+        "outcome": Outcome.DONE,
+    }
 
 
 def _cloud_looks(strobe: Stroboscope, clouds: Sequence[Cloud], exponents: bool) -> dict[str, Any]:
-    seen, members = np.concatenate([cloud.seen for cloud in clouds]), clouds[0].members
-    middle = np.median(seen, axis=0)
+    members = clouds[0].members
     exponent = lyapunov(strobe, members[:, -1]) if exponents else UNKNOWN
     beat = beat_frequency(strobe, members)
     return {
         "kind": "chaotic" if exponent.chaotic else "quasi-periodic",
-        "pipe_peak": middle[0], "relative_peak": middle[3],
-        "pipe_rms": float(np.sqrt(np.mean(seen[:, 2] ** 2))), "relative_rms": float(np.sqrt(np.mean(seen[:, 5] ** 2))),
-        "envelope": (np.min(seen[:, 1]), np.max(seen[:, 0])),
-        "relative_envelope": (np.min(seen[:, 4]), np.max(seen[:, 3])),
-        "period_multiple": 0, "beat_period": 2 * np.pi / beat, "frequencies": (strobe.frequency, beat),
-        "lyapunov": exponent.value, "lyapunov_interval": exponent.interval,
-        "representative_state": frozen(members[0, -1]), "outcome": Outcome.DONE,
-    }  # fmt: skip
+        **_sizes(np.concatenate([cloud.seen for cloud in clouds])),
+        "period_multiple": 0,
+        "beat_period": 2 * np.pi / beat,
+        "frequencies": (strobe.frequency, beat),
+        "lyapunov": exponent.value,
+        "lyapunov_interval": exponent.interval,
+        "representative_state": frozen(members[0, -1]),
+        "outcome": Outcome.DONE,
+    }
+
+
+def _sizes(seen: Floats) -> dict[str, Any]:
+    """Peaks, rms and envelopes from windows, see `Glimpse.seen`."""
+    least, most, middle = np.min(seen, axis=0), np.max(seen, axis=0), np.median(seen, axis=0)
+    rms = np.sqrt(np.mean(seen**2, axis=0))
+    return {
+        "pipe_peak": float(middle[0]),
+        "relative_peak": float(middle[3]),
+        "pipe_rms": float(rms[2]),
+        "relative_rms": float(rms[5]),
+        "envelope": (float(least[1]), float(most[0])),
+        "relative_envelope": (float(least[4]), float(most[3])),
+    }
 
 
 def _unsettled(strobe: Stroboscope, settled: Settled, counted: np.ndarray, total: int) -> list[Attractor]:
     """One entry for every reason a motion of the sample has no label."""
-    lost = []
-    reasons = [
-        outcome if label == UNLABELLED else None
-        for outcome, label in zip(settled.outcomes, settled.labels, strict=True)
-    ]
+    lost, nan = [], float("nan")
+    unlabelled = counted & (settled.labels == UNLABELLED)
     for reason in (Outcome.DIVERGED, Outcome.NOT_CONVERGED, Outcome.STEP_LIMIT, Outcome.STEP_TOO_SMALL):
-        members = np.flatnonzero([found is reason for found in reasons] & counted)
+        members = np.array([i for i in np.flatnonzero(unlabelled) if settled.outcomes[i] is reason], dtype=int)
         if not members.size:
             continue
-        seen = np.full((1, 6), np.inf if reason is Outcome.DIVERGED else np.nan)
+        seen = np.full((1, 6), np.inf if reason is Outcome.DIVERGED else nan)
         if reason is Outcome.NOT_CONVERGED:
-            seen = strobe.run(settled.states[members], _WATCH, window=_WATCH).seen
-        nan = float("nan")
-        lost.append(Attractor(
-            kind="unsettled", **_where(strobe), pipe_peak=np.max(seen[:, 0]), relative_peak=np.max(seen[:, 3]),
-            pipe_rms=np.max(seen[:, 2]), relative_rms=np.max(seen[:, 5]),
-            envelope=(np.min(seen[:, 1]), np.max(seen[:, 0])),
-            relative_envelope=(np.min(seen[:, 4]), np.max(seen[:, 3])),
-            period_multiple=0, beat_period=nan, frequencies=(strobe.frequency,), lyapunov=nan,
-            lyapunov_interval=(nan, nan), **_chance(members.size, total),
-            representative_state=frozen(settled.states[members[0]]), from_rest=False, outcome=reason,
-        ))  # fmt: skip
+            seen = np.max(strobe.run(settled.states[members], _WATCH, window=_WATCH).seen, axis=0, keepdims=True)
+        lost.append(
+            Attractor(
+                kind="unsettled",
+                **_where(strobe),
+                **_sizes(seen),
+                period_multiple=0,
+                beat_period=nan,
+                frequencies=(strobe.frequency,),
+                lyapunov=nan,
+                lyapunov_interval=(nan, nan),
+                **_chance(members.size, total),
+                representative_state=frozen(settled.states[members[0]]),
+                from_rest=False,
+                outcome=reason,
+            )
+        )
     return lost

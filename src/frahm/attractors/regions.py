@@ -17,6 +17,7 @@ NAMES = ("x1", "v1", "z", "w")
 UNITS = {"x1": "m", "v1": "m/s", "z": "m", "w": "m/s"}
 _HOST_DOMINATES = 1e3  # above this many static deflections the host's own resonance says nothing about its motions
 _INDEPENDENT = 1e-9
+_LARGEST = 1e30  # beyond any structure, and far from where numbers end
 
 Region = dict[str, tuple[float, float]]
 
@@ -71,9 +72,9 @@ def checked_region(system: System, region: Any, argument: str = "region") -> Reg
             lo, hi = bounds
         except (TypeError, ValueError):
             raise ParameterError(f"{argument}[{name!r}]", bounds, f"two numbers (lo, hi) [{UNITS[name]}]") from None
-        lo = check_number(f"{argument}[{name!r}][0]", lo, unit=UNITS[name])
-        hi = check_number(f"{argument}[{name!r}][1]", hi, unit=UNITS[name])
-        if not lo <= hi or not np.isfinite(hi - lo):
+        lo = check_number(f"{argument}[{name!r}][0]", lo, at_least=-_LARGEST, at_most=_LARGEST, unit=UNITS[name])
+        hi = check_number(f"{argument}[{name!r}][1]", hi, at_least=-_LARGEST, at_most=_LARGEST, unit=UNITS[name])
+        if not lo <= hi:
             raise ParameterError(f"{argument}[{name!r}]", (lo, hi), f"two numbers lo <= hi [{UNITS[name]}]")
         checked[name] = (lo, hi)
     return checked

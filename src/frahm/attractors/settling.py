@@ -21,7 +21,7 @@ from frahm.errors import Outcome
 
 START = (20, 30, 50, 50, 50)  # periods of the first stretches: only balls are asked
 BLOCK, WINDOW = 100, 3  # periods of a further stretch, stretches of a window
-_GROUP = 2048  # states carried at a time: bounds the memory
+_GROUP = 4096  # coordinates carried at a time: bounds the memory
 _FAR = 1e9  # times the size of everything seen at the start
 _ATTEMPTS = 8  # motions per call that may be tried as evidence of an attractor not known yet
 _REST = 3 * BLOCK  # periods after which a motion that was tried in vain may be tried again
@@ -85,11 +85,11 @@ class Settling:
         waiting = Outcome.NOT_CONVERGED if resume else Outcome.INTERRUPTED
         result = Settled(np.full(count, UNLABELLED), [waiting] * count, np.array(states), np.zeros(count, dtype=int))
         self._attempts = _ATTEMPTS
-        done = 0
+        done, group = 0, max(8, _GROUP // self.strobe.system.size)
         try:
             while resume and done < count:
-                self._settle_group(result, np.arange(done, min(done + _GROUP, count)))
-                done += _GROUP
+                self._settle_group(result, np.arange(done, min(done + group, count)))
+                done += group
         except KeyboardInterrupt:
             for i in range(done, count):
                 if result.outcomes[i] is Outcome.NOT_CONVERGED:

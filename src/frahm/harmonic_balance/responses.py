@@ -89,7 +89,7 @@ def periodic_responses_of(system: System, frequency: float, harmonics: int | Non
 
 
 def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> list[PeriodicResponse]:
-    """Periodic responses at Omega = `frequency` [rad/s] on branches already followed, by ascending relative amplitude."""
+    """Periodic responses at Omega = `frequency` [rad/s] on branches already followed, by relative amplitude."""
     found: list[PeriodicResponse] = []
     for track in tracks:
         for X, H in _crossings(search, track, frequency):
