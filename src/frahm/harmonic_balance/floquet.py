@@ -112,7 +112,8 @@ def monodromy(pb, va, H, odd, W, u, Phi):
     square = va.fastest**2
     for e in range(E):
         square += va.hardest[e] * slope[e]
-    steps = math.ceil(max(span * math.sqrt(square) / _ADVANCE, span * W * _reach(H, u) / _TURN, 3.0))
+    turn = W * _reach(H, u) * max(1.0, 0.5 * (pb.degree - 1))  # the slope of a power p has harmonics up to (p - 1) H
+    steps = math.ceil(max(span * math.sqrt(square) / _ADVANCE, span * turn / _TURN, 3.0))
     h = span / steps
     Phi[:] = 0.0
     for i in range(m):

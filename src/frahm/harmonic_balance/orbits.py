@@ -14,25 +14,34 @@ from frahm.harmonic_balance.newton import correct, resize, tangent
 
 @kernel
 def peak_of(x, H, odd):
-    """Largest |Re sum_k x_k e^{ik tau}| over a period: best sample, then Newton on the derivative."""
+    """Largest |Re sum_k x_k e^{ik tau}| over a period: every high sample refined by Newton on the slope, bracketed."""
     N = max(24, (2 if odd else 4) * H + 8)
     first, step = (1, 2) if odd else (0, 1)
-    span = math.pi if odd else 2.0 * math.pi
-    best, at = -1.0, 0.0
+    h = (math.pi if odd else 2.0 * math.pi) / N
+    size, best, at = np.empty(N), 0.0, 0
     for j in range(N):
-        tau = span * j / N
-        value = abs(_series(x, H, first, step, tau)[0])
-        if value > best:
-            best, at = value, tau
-    for _ in range(4):
-        value, slope, curve = _series(x, H, first, step, at)
-        if curve == 0.0:
-            break
-        move = slope / curve
-        if abs(move) > span / N:
-            break
-        at -= move
-    return max(best, abs(_series(x, H, first, step, at)[0]))
+        size[j] = abs(_series(x, H, first, step, h * j)[0])
+        if size[j] > best:
+            best, at = size[j], j
+    highest = best
+    for j in range(N):
+        if j != at and (size[j] < 0.8 * best or size[j] < size[j - 1] or size[j] < size[(j + 1) % N]):
+            continue
+        lo, hi, tau = h * (j - 1), h * (j + 1), h * j
+        for _ in range(8):
+            value, slope, curve = _series(x, H, first, step, tau)
+            highest = max(highest, abs(value))
+            if value < 0.0:
+                slope, curve = -slope, -curve
+            if slope > 0.0:
+                lo = tau
+            else:
+                hi = tau
+            move = -slope / curve if curve < 0.0 else math.inf
+            if abs(move) < 1e-9:
+                break
+            tau = tau + move if lo < tau + move < hi else 0.5 * (lo + hi)
+    return highest
 
 
 @kernel
