@@ -1,0 +1,53 @@
+import numpy as np
+import pytest
+
+import frahm
+from frahm.attractors.orbits import monodromy_along, orbit_at, points_needed, refined, unstable_directions
+from frahm.attractors.stroboscope import stroboscope
+from frahm.harmonic_balance import periodic_responses_of
+from frahm.time_integration import integrate_batch
+
+CASE = frahm.load_case("jacket-pipe").with_absorber(kappa=367.38, xi2=0.0085, rho2=0.02)
+SYSTEM = frahm.build_system(CASE)
+FREQUENCY = SYSTEM.reference_frequency - 0.144
+RESPONSES = periodic_responses_of(SYSTEM, FREQUENCY, None)
+
+
+@pytest.fixture(scope="module")
+def strobe():
+    return stroboscope(SYSTEM, FREQUENCY)
+
+
+@pytest.mark.parametrize("response", RESPONSES, ids=lambda response: f"{response.pipe_peak:.4f}")
+def test_the_monodromy_matrix_has_the_multipliers_of_harmonic_balance(response):
+    count = points_needed(SYSTEM, response.period, np.full(2, response.relative_peak))
+    Phi = monodromy_along(SYSTEM, response.period, response.x(np.linspace(0, response.period, count)))
+    ours = np.sort_complex(np.linalg.eigvals(Phi))
+    np.testing.assert_allclose(ours, np.sort_complex(np.array(response.multipliers)), atol=2e-6)
+
+
+@pytest.mark.parametrize("which", [0, 2])
+def test_every_state_of_a_ball_stays_in_it_and_converges(strobe, which):
+    orbit = orbit_at(strobe, RESPONSES[which].state)
+    (ball,) = orbit.balls
+    assert ball.verified
+    random = np.random.default_rng(3)
+    steps = random.standard_normal((500, 4))
+    steps *= (random.random((500, 1)) ** 0.25) / np.linalg.norm(steps, axis=1, keepdims=True)
+    states = ball.centre + ball.radius * steps @ np.linalg.inv(ball.root).T
+    assert np.all(ball.contains(states))
+    later = integrate_batch(SYSTEM, frequency=FREQUENCY, initial_states=states, periods=100, window=0)
+    assert np.all(ball.contains(later.final_states))
+    end = integrate_batch(SYSTEM, frequency=FREQUENCY, initial_states=states, periods=1500, window=0)
+    np.testing.assert_allclose(end.final_states, np.tile(RESPONSES[which].state, (500, 1)), atol=1e-6)
+
+
+def test_an_unstable_response_has_no_ball_and_a_way_out(strobe):
+    assert orbit_at(strobe, RESPONSES[1].state) is None
+    assert len(unstable_directions(strobe, np.array(RESPONSES[1].state))) == 1
+
+
+def test_newton_finds_the_orbit_from_beside_it(strobe):
+    state = np.array(RESPONSES[2].state)
+    found = refined(strobe, state * 1.01, 1)
+    np.testing.assert_allclose(found, state, rtol=1e-7)
