@@ -24,19 +24,24 @@ def finite_array(name: str, values: ArrayLike, shape: tuple[int, ...]) -> Floats
     """Read-only float array of the given shape (``-1`` matches any length), all entries finite."""
     wanted = " x ".join("n" if length < 0 else str(length) for length in shape)
     allowed = f"a finite real array of shape ({wanted})"
-    try:
-        raw = np.asarray(values)
-        array = np.array(raw, dtype=float)
-    except (TypeError, ValueError):
-        raise ParameterError(name, values, allowed) from None
-    if raw.dtype.kind in "USOMmb" or (raw.dtype.kind == "c" and np.any(raw.imag)):
-        raise ParameterError(name, values, allowed)
+    array = real_array(name, values, allowed).copy()
     if array.ndim != len(shape) or any(want not in (-1, got) for want, got in zip(shape, array.shape, strict=True)):
         raise ParameterError(name, f"shape {array.shape}", allowed)
     if not np.all(np.isfinite(array)):
         raise ParameterError(name, values, allowed)
     array.flags.writeable = False
     return array
+
+
+def real_array(name: str, values: ArrayLike, allowed: str) -> Floats:
+    """Float array of real numbers; text, booleans, dates and complex numbers are refused."""
+    try:
+        raw = np.asarray(values)
+        if raw.dtype.kind in "USOMmbc":
+            raise TypeError
+        return np.asarray(raw, dtype=float)
+    except (TypeError, ValueError):
+        raise ParameterError(name, values, allowed) from None
 
 
 def labelled(dims: str | tuple[str, ...], data: ArrayLike, long_name: str, units: str, **more: Any) -> tuple[Any, ...]:

@@ -64,6 +64,9 @@ def frequency_response(
     if method == "harmonic-balance":
         return exact_curve(system, lo, hi, highest_harmonic(harmonics))
     slow = slow_flow_of(system, form)
+    if lo <= slow.limits[0]:
+        allowed = f"above {slow.limits[0] - slow.omega:.6g} rad/s: below it the {form} form means nothing"
+        raise ParameterError("detuning", lo - slow.omega, allowed)
     settings = {"method": method, "form": form, "frequency_window": (lo, hi), "points": count}
     return _curve(system, slow, slow_branches(slow, lo, hi, count), settings)
 
@@ -138,8 +141,9 @@ def _curve(system: System, slow: SlowFlow, found: SlowBranches, settings: dict[s
         stable=found.stable,
         growth_rate=found.growth_rate,
         detached=found.detached,
+        asymmetric=(False,) * len(found.detached),
         special_points=tuple(special),
-        unverified=tuple(f"{text} could not be separated from its neighbours" for text in doubtful),
+        unverified=(*found.unverified, *(f"{text} could not be separated from its neighbours" for text in doubtful)),
         settings=settings,
         system=system.name,
     )

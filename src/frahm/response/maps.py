@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from frahm import __version__
-from frahm.arrays import Floats, labelled
+from frahm.arrays import Floats, labelled, real_array
 from frahm.case import Case
 from frahm.errors import ParameterError, check_count, check_number
 from frahm.slow_flow import AXES, SlowFlow, boundary_curves, pipe_scale, slow_flow_of
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 BOUNDARY_KINDS = ("saddle-node", "hopf")
+_LARGEST = 1e100
 _UNITS = {"detuning": "rad/s", "kappa": "1/(m^2 s^2)", "xi2": "1/s"}
 
 
@@ -90,14 +91,11 @@ def slow_flow_map(
 
 def _axis(slow: SlowFlow, name: str, values: ArrayLike) -> Floats:
     above = slow.limits[0] - slow.omega if name == "detuning" else None
-    allowed = f"finite numbers [{_UNITS[name]}]" + ("" if above is None else f" > {above:.6g}")
+    allowed = f"numbers below {_LARGEST:g} in size [{_UNITS[name]}]" + ("" if above is None else f" > {above:.6g}")
     if name == "xi2":
         allowed += " >= 0"
-    try:
-        array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        raise ParameterError(name, values, allowed) from None
-    if array.size == 0 or not np.all(np.isfinite(array)):
+    array = real_array(name, values, allowed)
+    if array.size == 0 or not np.all(np.abs(array) < _LARGEST):
         raise ParameterError(name, values, allowed)
     if (above is not None and np.min(array) <= above) or (name == "xi2" and np.min(array) < 0):
         raise ParameterError(name, float(np.min(array)), allowed)
@@ -143,7 +141,8 @@ def stability_boundaries(
     form : str
         "averaged" or "paper".
     resolution : int
-        Grid lines per axis on which the curves are looked for; every vertex is then located to rounding.
+        Grid lines per axis on which the curves are looked for; every vertex is then located to rounding. Tips and
+        loops narrower than the spacing of the lines are cut off or not seen.
 
     Returns
     -------

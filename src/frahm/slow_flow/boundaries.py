@@ -53,8 +53,21 @@ def _loads_at_n(form, omega, xi1, k1, W, xi2, rho2, m, load, X, Z2):
 
 
 @kernel
-def _tests_on_roots(form, omega, xi1, k1, W, xi2, rho2, F, kappa, saddle, hopf, third, X, Z):
-    """Discriminant of the cubic, product of the Hurwitz determinants over its roots, and the root closest to Hopf."""
+def _double_root(c, h):
+    """The turning point of m^3 + 2 c m^2 + m whose value is nearer to h."""
+    spread = math.sqrt(max(4.0 * c * c - 3.0, 0.0))
+    low, high = (-2.0 * c - spread) / 3.0, (-2.0 * c + spread) / 3.0
+    miss_low = abs(((low + 2.0 * c) * low + 1.0) * low - h)
+    miss_high = abs(((high + 2.0 * c) * high + 1.0) * high - h)
+    return low if miss_low < miss_high else high
+
+
+@kernel
+def _tests_on_roots(form, omega, xi1, k1, W, xi2, rho2, F, kappa, double, saddle, hopf, third, X, Z):
+    """Discriminant of the cubic, product of the Hurwitz determinants over its roots, and the amplitudes of one root.
+
+    That root is the double one if `double`, as at a saddle-node, and otherwise the one closest to a Hopf point.
+    """
     for i in range(W.size):
         d2, d1, d0, s1, s0, e, g2 = linear_parts(form, W[i], omega, xi1, xi2[i], k1, rho2[i])
         absd, abss = abs(d0), abs(s0)
@@ -69,10 +82,14 @@ def _tests_on_roots(form, omega, xi1, k1, W, xi2, rho2, F, kappa, saddle, hopf, 
             c1, c2, c3, c4 = characteristic(d2, d1, d0, s1, s0, n)
             value = hurwitz(c1, c2, c3, c4) / (abs(c3 * c1 * c2) + c3 * c3 + c1 * c1 * abs(c4))
             product *= value
-            if abs(value) < closest:
+            if abs(value) < closest and not double:
                 closest = abs(value)
                 third[i], Z[i], X[i] = c3, math.sqrt(N), pipe_amplitude(N, n, e, g2)
         hopf[i] = product
+        if double:
+            n = _double_root(c, h) * absd / abss
+            N = n / (0.75 * kappa[i])
+            third[i], Z[i], X[i] = 1.0, math.sqrt(N), pipe_amplitude(N, n, e, g2)
 
 
 def boundary_curves(
@@ -98,13 +115,16 @@ def boundary_curves(
 
 def _check_plane(slow: SlowFlow, plane: tuple[str, str], bounds: tuple[tuple[float, float], ...]) -> None:
     allowed = "two different names out of " + ", ".join(AXES)
+    for name, given in (("plane", plane), ("bounds", bounds)):
+        if not isinstance(given, tuple | list):
+            raise ParameterError(name, given, allowed if name == "plane" else "((lo, hi), (lo, hi))")
     unknown = [str(axis) for axis in plane if axis not in AXES]
     if len(set(plane)) != 2:
         raise ParameterError("plane", plane, allowed)
     for axis in unknown:
         near = nearest(axis, AXES)
         raise ParameterError("plane", axis, allowed, hint=f"Did you mean {near!r}?" if near else None)
-    if len(bounds) != 2 or any(len(pair) != 2 for pair in bounds):
+    if len(bounds) != 2 or any(np.shape(pair) != (2,) for pair in bounds):
         raise ParameterError("bounds", bounds, "((lo, hi), (lo, hi)), one pair for each axis of the plane")
     for axis, (lo, hi) in zip(plane, bounds, strict=True):
         above = slow.limits[0] - slow.omega if axis == "detuning" else -math.inf
@@ -146,7 +166,9 @@ def _along_load(
     for kind in ("saddle-node", "hopf"):
         test = _load_test(at, other, kind)
         for line in zero_curves(test, grid, np.linspace(-7.0, 7.0, resolution)):
-            curves += _mapped(at, plane, limits, load, other, kind, line)
+            dense = _between_bounds(test, lambda part: _load_along(at, load, other, part)[0], line, limits[load])
+            for part in dense:
+                curves += _mapped(at, plane, load, other, kind, part)
     return curves
 
 
@@ -162,49 +184,118 @@ def _load_test(at: _At, other: str, kind: str) -> Callable[[Floats, Floats], Flo
     return test
 
 
-def _mapped(
-    at: _At,
-    plane: tuple[str, str],
-    limits: dict[str, tuple[float, float]],
-    load: str,
-    other: str,
-    kind: str,
-    line: Floats,
-) -> list[BoundaryCurve]:
-    """Carry a curve from (other axis, log m) to the plane and cut away what lies outside or is no Hopf point."""
+def _load_along(at: _At, load: str, other: str, line: Floats) -> tuple[Floats, ...]:
+    """Value of the load axis, delta_3, |X| and |Z| [m] along a curve in (other axis, log m)."""
     v = at.values(**{other: line[:, 0]})
     arguments = (v["frequency"], v["xi2"], v["rho2"], np.exp(line[:, 1]))
     saddle, hopf, third, load2, X2, Z2 = (np.empty(len(line)) for _ in range(6))
     _tests_at_n(*at.head, *arguments, saddle, hopf, third)
     _loads_at_n(*at.head, *arguments, load2, X2, Z2)
-    if load == "kappa":
-        value = load2 / (v["force"] * at.slow.force) ** 2
-        kappa = value
-    else:
-        kappa = v["kappa"]
-        value = np.sqrt(load2 / kappa) / at.slow.force
+    kappa = load2 / (v["force"] * at.slow.force) ** 2 if load == "kappa" else v["kappa"]
+    value = kappa if load == "kappa" else np.sqrt(load2 / kappa) / at.slow.force
+    return value, third, np.sqrt(X2 / kappa), np.sqrt(Z2 / kappa)
+
+
+def _mapped(at: _At, plane: tuple[str, str], load: str, other: str, kind: str, line: Floats) -> list[BoundaryCurve]:
+    """Carry a curve from (other axis, log m) to the plane and cut away what is no Hopf point."""
+    value, third, X, Z = _load_along(at, load, other, line)
     coordinates = {other: line[:, 0], load: value}
-    lo, hi = limits[load]
-    keep = (value >= lo) & (value <= hi) & ((third > 0) | (kind == "saddle-node"))
-    x, y = coordinates[plane[0]], coordinates[plane[1]]
-    return _runs(kind, keep, x, y, np.sqrt(X2 / kappa), np.sqrt(Z2 / kappa))
+    keep = (third > 0) | (kind == "saddle-node")
+    return _runs(kind, keep, coordinates[plane[0]], coordinates[plane[1]], X, Z)
+
+
+def _between_bounds(
+    test: Callable[[Floats, Floats], Floats],
+    load: Callable[[Floats], Floats],
+    line: Floats,
+    bounds: tuple[float, float],
+) -> list[Floats]:
+    """The stretches of a zero curve on which the load lies within its bounds, ended exactly on them.
+
+    Vertices are added so that the load changes by at most a hundredth of the range from one to the next.
+    """
+    lo, hi = bounds
+    value = load(line)
+    inside = np.clip(value, lo, hi)
+    parts = np.ceil(np.abs(np.diff(inside)) / (0.01 * (hi - lo))).astype(int).clip(1, 400)
+    index = np.repeat(np.arange(len(parts)), parts)
+    # fractions aim at equal steps of the load inside the bounds, if the load were linear along the segment
+    step = np.concatenate([np.arange(count) / count for count in parts])
+    change = value[index + 1] - value[index]
+    target = inside[index] + step * (inside[index + 1] - inside[index])
+    fraction = np.where(change == 0, step, (target - value[index]) / np.where(change == 0, 1.0, change)).clip(0, 1)
+    points = np.vstack([_on_segment(test, line, index, fraction), line[-1:]])
+    value = load(points)
+    crossing, at_bound = _crossings(test, load, points, value, bounds)
+    points, value = np.insert(points, crossing + 1, at_bound, axis=0), np.insert(value, crossing + 1, load(at_bound))
+    margin = 1e-9 * (hi - lo)
+    keep = (value >= lo - margin) & (value <= hi + margin)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], keep, [False]]).astype(int)))
+    return [points[a:b] for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > 1]
+
+
+def _crossings(
+    test: Callable[[Floats, Floats], Floats],
+    load: Callable[[Floats], Floats],
+    points: Floats,
+    value: Floats,
+    bounds: tuple[float, float],
+) -> tuple[np.ndarray, Floats]:
+    """Segments in which the load passes one of its bounds, and the points where it does."""
+    found: list[tuple[int, Floats]] = []
+    for bound in bounds:
+        index = np.flatnonzero((value[:-1] - bound) * (value[1:] - bound) < 0)
+        if not index.size:
+            continue
+        below, above = np.zeros(index.size), np.ones(index.size)
+        start = np.sign(value[index] - bound)
+        for _ in range(50):
+            middle = 0.5 * (below + above)
+            same = np.sign(load(_on_segment(test, points, index, middle)) - bound) == start
+            below, above = np.where(same, middle, below), np.where(same, above, middle)
+        found += list(zip(index.tolist(), _on_segment(test, points, index, above), strict=True))
+    found.sort(key=lambda item: (item[0], float(np.sum((item[1] - points[item[0]]) ** 2))))
+    return np.array([i for i, _ in found], dtype=int), np.array([point for _, point in found]).reshape(-1, 2)
+
+
+def _on_segment(test: Callable[[Floats, Floats], Floats], line: Floats, index: np.ndarray, fraction: Floats) -> Floats:
+    """Points of the zero curve at fractions of its segments, by bisection across the segment."""
+    a, b = line[index], line[index + 1]
+    guess = a + fraction[:, None] * (b - a)
+    size = np.ptp(line, axis=0) + 1e-300
+    along_first = np.abs(b - a)[:, 0] / size[0] >= np.abs(b - a)[:, 1] / size[1]
+    moving, fixed = np.where(along_first, guess[:, 1], guess[:, 0]), np.where(along_first, guess[:, 0], guess[:, 1])
+
+    def across(values: Floats) -> Floats:
+        return test(np.where(along_first, fixed, values), np.where(along_first, values, fixed))
+
+    width = np.where(along_first, np.abs(b - a)[:, 1], np.abs(b - a)[:, 0]) + 1e-9 * (1 + np.abs(moving))
+    lo, hi = moving - width, moving + width
+    bracketed = across(lo) * across(hi) <= 0
+    f_lo = across(lo)
+    for _ in range(60):
+        middle = 0.5 * (lo + hi)
+        left = np.signbit(across(middle)) == np.signbit(f_lo)
+        lo, hi = np.where(left, middle, lo), np.where(left, hi, middle)
+    solved = np.where(bracketed & (fraction > 0) & (fraction < 1), 0.5 * (lo + hi), moving)
+    return np.column_stack([np.where(along_first, fixed, solved), np.where(along_first, solved, fixed)])
 
 
 def _in_plane(
     at: _At, plane: tuple[str, str], bounds: tuple[tuple[float, float], ...], resolution: int
 ) -> list[BoundaryCurve]:
-    def tests(x: Floats, y: Floats) -> tuple[Floats, ...]:
+    def tests(x: Floats, y: Floats, double: bool = False) -> tuple[Floats, ...]:
         v = at.values(**{plane[0]: x, plane[1]: y})
         out = tuple(np.empty(v[plane[0]].size) for _ in range(5))
         arguments = (v["frequency"], v["xi2"], v["rho2"], v["force"] * at.slow.force, v["kappa"])
-        _tests_on_roots(*at.head, *arguments, *out)
+        _tests_on_roots(*at.head, *arguments, double, *out)
         return tuple(part.reshape(np.shape(x)) for part in out)
 
     grids = [np.linspace(*_open(pair), resolution) for pair in bounds]
     curves = []
     for index, kind in enumerate(("saddle-node", "hopf")):
         for line in zero_curves(lambda x, y, index=index: tests(x, y)[index], *grids):  # type: ignore[misc]
-            _, _, third, X, Z = tests(line[:, 0], line[:, 1])
+            _, _, third, X, Z = tests(line[:, 0], line[:, 1], kind == "saddle-node")
             keep = (third > 0) | (kind == "saddle-node")
             curves += _runs(kind, keep, line[:, 0], line[:, 1], X, Z)
     return curves

@@ -10,12 +10,13 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.compiled import kernel
+from frahm.errors import ConvergenceError
 from frahm.polynomials import growth_rate
-from frahm.slow_flow.kernels import characteristic, equilibria, linear_parts, pipe_amplitude
+from frahm.slow_flow.kernels import characteristic, equilibria, hurwitz, linear_parts, pipe_amplitude
 from frahm.slow_flow.model import SlowFlow
 from frahm.slow_flow.subdivision import HOPF, SADDLE_NODE, special_points
 
-_MOST_POINTS = 64
+_MOST_POINTS = 256
 
 
 @dataclass(frozen=True)
@@ -58,6 +59,7 @@ class SlowBranches:
     detached: tuple[bool, ...]
     points: tuple[LocatedPoint, ...]
     point_branch: tuple[int, ...]
+    unverified: tuple[str, ...]
 
 
 @kernel
@@ -91,13 +93,28 @@ def locate_points(slow: SlowFlow, kind: str, lo: float, hi: float) -> list[Locat
     out = np.empty((_MOST_POINTS, 3))
     code = {"saddle-node": SADDLE_NODE, "hopf": HOPF}[kind]
     found = special_points(slow.code, *slow.host, slow.force, slow.kappa, code, lo, hi, out)
-    rows = out[: max(found, 0)]
+    if found < 0:
+        raise ConvergenceError(
+            f"The {kind} points could not be separated: there are too many of them, or they coincide."
+        )
     points = []
-    for W, n, undecided in rows[np.argsort(rows[:, 0])]:
+    for W, n, undecided in out[:found][np.argsort(out[:found, 0])]:
         third, ratio, growth = _on_curve(slow.code, *slow.host, W, n)
-        if kind == "saddle-node" or third > 0:  # a pair +-lambda of real eigenvalues is no Hopf point: delta_3 < 0
+        real_pair = kind == "hopf" and third <= 0  # +-lambda also makes the determinant vanish: delta_3 < 0 tells
+        if not real_pair and not (undecided and kind == "hopf" and _only_touches(slow, W, n)):
             points.append(LocatedPoint(kind, float(W), float(n), ratio, growth, not undecided))
     return points
+
+
+def _only_touches(slow: SlowFlow, W: float, n: float) -> bool:
+    """Whether the Hurwitz determinant has one sign on both sides: neutral for a moment, but nothing is lost."""
+    signs = []
+    for beside in (W * (1 - 1e-6), W * (1 + 1e-6)):
+        d2, d1, d0, s1, s0, e, _ = linear_parts(slow.code, beside, *slow.host)
+        count, *roots = equilibria(d0, s0, e, slow.force, slow.kappa)
+        near = min((0.75 * slow.kappa * N for N in roots[:count]), key=lambda value: abs(value - n))
+        signs.append(hurwitz(*characteristic(d2, d1, d0, s1, s0, near)) > 0)
+    return signs[0] == signs[1]
 
 
 def slow_branches(slow: SlowFlow, lo: float, hi: float, points: int) -> SlowBranches:
@@ -107,13 +124,17 @@ def slow_branches(slow: SlowFlow, lo: float, hi: float, points: int) -> SlowBran
     three roots meet. Following these joints gives the branches, closed ones included. Where three roots reach the
     window's edge, saddle-nodes outside decide which of them belong together.
     """
-    folds = locate_points(slow, "saddle-node", lo, hi)
-    hopfs = locate_points(slow, "hopf", lo, hi)
+    folds, hopfs, unverified = [], [], []
+    try:
+        folds = locate_points(slow, "saddle-node", lo, hi)
+        hopfs = locate_points(slow, "hopf", lo, hi)
+    except ConvergenceError as failure:
+        unverified.append(str(failure))
     graph = _Graph(slow, lo, hi, folds)
     grid = np.unique(np.concatenate([np.linspace(lo, hi, points), [p.frequency for p in folds + hopfs]]))
     N, X, growth = (np.empty((grid.size, 3)) for _ in range(3))
     _evaluate(slow.code, *slow.host, slow.force, slow.kappa, grid, N, X, growth)
-    return _collect(slow, graph, _Roots(grid, N, X, growth), folds + hopfs)
+    return _collect(slow, graph, _Roots(grid, N, X, growth), folds + hopfs, tuple(unverified))
 
 
 @dataclass(frozen=True)
@@ -254,7 +275,9 @@ def _roots_at(slow: SlowFlow, W: float) -> Floats:
     return np.array(roots[:count])
 
 
-def _collect(slow: SlowFlow, graph: _Graph, roots: _Roots, points: list[LocatedPoint]) -> SlowBranches:
+def _collect(
+    slow: SlowFlow, graph: _Graph, roots: _Roots, points: list[LocatedPoint], unverified: tuple[str, ...]
+) -> SlowBranches:
     """Concatenate the roots in the order of the branches and say on which branch each special point lies."""
     columns: list[tuple[Floats, Floats, Floats, Floats]] = []
     labels: list[tuple[int, int, int]] = []
@@ -293,6 +316,7 @@ def _collect(slow: SlowFlow, graph: _Graph, roots: _Roots, points: list[LocatedP
         detached=tuple(not graph.is_main(component) for component in graph.components),
         points=tuple(points),
         point_branch=tuple(owner[id(point)] for point in points),
+        unverified=unverified,
     )
 
 

@@ -25,6 +25,8 @@ _BASIS = _BINOMIAL * _NODES[:, None] ** np.arange(_DEGREE + 1) * (1 - _NODES[:, 
 _TO_BERNSTEIN = np.linalg.inv(_BASIS)
 _NOISE = 1e-13
 _SMALLEST = 2.0**-44
+_STIFFEST = 1e6  # n over the sink's inertia e beyond which the sink is as good as fixed to the pipe
+_STRIPS = 24
 
 
 @kernel
@@ -163,9 +165,15 @@ def special_points(form, omega, xi1, xi2, k1, rho2, F, kappa, kind, W_lo, W_hi, 
     n_hi = _n_bound(form, omega, xi1, xi2, k1, rho2, F, kappa, u_lo, u_hi)
     if kappa == 0.0 or F == 0.0:
         return 0
-    stack = np.empty((512, 4))
-    stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = u_lo, u_hi - u_lo, min(0.0, n_hi), abs(n_hi)
-    top, found = 1, 0
+    stack = np.empty((2048, 4))
+    top, found = 0, 0
+    height = abs(n_hi)
+    for strip in range(_STRIPS):  # from large n to small, each strip a quarter of the one above it
+        base = 0.25 * height if strip < _STRIPS - 1 else 0.0
+        stack[top, 0], stack[top, 1] = u_lo, u_hi - u_lo
+        stack[top, 2], stack[top, 3] = base if n_hi > 0.0 else -height, height - base
+        height = base
+        top += 1
     while top > 0:
         top -= 1
         u0, du, n0, dn = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
@@ -177,7 +185,7 @@ def special_points(form, omega, xi1, xi2, k1, rho2, F, kappa, kind, W_lo, W_hi, 
         if _one_sign(C):
             continue
         a11, a12, a21, a22, deviation = _contraction(C, T)
-        tiny = du < _SMALLEST * abs(u0 + du) or dn < _SMALLEST * abs(n_hi)
+        tiny = du < _SMALLEST * abs(u0 + du) or dn < _SMALLEST * (abs(n0) + dn)
         if deviation < 0.7 or tiny:
             inside, s, t = True, 0.5, 0.5
             if deviation < 0.7:
@@ -232,12 +240,15 @@ def _n_bound(form, omega, xi1, xi2, k1, rho2, F, kappa, u_lo, u_hi):
         _, _, d0, _, s0, e, _ = linear_parts(form, frequency_of(form, u), omega, xi1, xi2, k1, rho2)
         S = abs(s0)
         if S > 0.0:
-            bound = max(bound, abs(d0) / S + np.cbrt(abs(0.75 * kappa) * e * e * F * F / (S * S)))
+            here = abs(d0) / S + np.cbrt(abs(0.75 * kappa) * e * e * F * F / (S * S))
+            bound = max(bound, min(here, _STIFFEST * abs(e)))
     # |s0| is smallest, and the bound largest, where the pipe is in resonance with the sink's mass locked to it
     W = omega / math.sqrt(1.0 + rho2) if form == AVERAGED else omega
     if W > 0.0 and u_lo <= variable_of(form, W) <= u_hi:
         _, _, d0, _, s0, e, _ = linear_parts(form, W, omega, xi1, xi2, k1, rho2)
         S = abs(s0)
+        here = _STIFFEST * abs(e)
         if S > 0.0:
-            bound = max(bound, abs(d0) / S + np.cbrt(abs(0.75 * kappa) * e * e * F * F / (S * S)))
+            here = min(here, abs(d0) / S + np.cbrt(abs(0.75 * kappa) * e * e * F * F / (S * S)))
+        bound = max(bound, here)
     return math.copysign(2.0 * bound, kappa)
