@@ -89,7 +89,7 @@ def test_bad_field(folder, old, new, says):
         ("absorbers: [{mass: 1, law: soft}]", r"absorbers\[0\].law: given 'soft'; allowed: a mapping with kind"),
         (
             "absorbers:\n- mass: 1\n  law:\n    kind: cubic\n    stiffness: -2\n    damping: 0",
-            r"bad.yaml:7: absorbers\[0\].law.stiffness: given -2; .*\[N/m\^3\] >= 0",
+            r"bad.yaml:7: absorbers\[0\].law.stiffness: given -2; .*\[N/m\^3\] > 0",
         ),
         (
             "absorbers:\n- mass: 1\n  law:\n    kind: cubic\n    stifness: 2\n    damping: 0",
@@ -212,3 +212,23 @@ def test_all_problems_of_a_case_are_told_at_once(folder):
     first, *others = refused_text(folder, text).split("\n")
     assert re.search(r"bad.yaml:1: pipe.diametre: given 1; .*Did you mean 'diameter'", first)
     assert [re.search(r"bad.yaml:\d: (\S+): given", line)[1] for line in others] == ["pipe.mass", "wind.speed"]
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "bound"),
+    [
+        (("absorbers", 0, "law", "stiffness"), 0, "> 0"),
+        (("analysis", "periods"), 11_000_000, "<= 1000000"),
+        (("analysis", "periods"), 0, ">= 1"),
+    ],
+)
+def test_bounds_that_a_later_step_would_run_into_are_checked_at_the_door(path, value, bound):
+    data = frahm.load_case("jacket-pipe").to_dict()
+    place = data
+    for key in path[:-1]:
+        place = place[key]
+    place[path[-1]] = value
+    with pytest.raises(frahm.ParameterError) as caught:
+        frahm.load_case(data)
+    assert str(path[-1]) in str(caught.value)
+    assert bound in str(caught.value)

@@ -68,7 +68,7 @@ class CubicLaw(Section):
     """A nonlinear energy sink: force = stiffness z^3 + damping z'."""
 
     kind: Literal["cubic"] = Field(default="cubic", title="Kind of force law", description="Purely cubic spring.")
-    stiffness: Annotated[float, Quantity("N/m^3", "k_nes", at_least=0)] = Field(
+    stiffness: Annotated[float, Quantity("N/m^3", "k_nes", above=0)] = Field(
         title="Cubic stiffness",
         description="Force per cubed displacement of the absorber relative to the pipe.",
     )
@@ -82,7 +82,7 @@ class LinearLaw(Section):
     """A tuned mass damper: force = stiffness z + damping z'."""
 
     kind: Literal["linear"] = Field(default="linear", title="Kind of force law", description="Linear spring.")
-    stiffness: Annotated[float, Quantity("N/m", "k", at_least=0)] = Field(
+    stiffness: Annotated[float, Quantity("N/m", "k", above=0)] = Field(
         title="Linear stiffness",
         description="Force per displacement of the absorber relative to the pipe.",
     )
@@ -163,12 +163,12 @@ class Analysis(Section):
         title="Form of the slow flow",
         description="averaged keeps the exact excitation frequency, paper is the published expansion.",
     )
-    periods: Annotated[int, Count()] = Field(
+    periods: Annotated[int, Count(at_most=1_000_000)] = Field(
         default=1000,
         title="Periods of time integration",
         description="Excitation periods a motion is followed for before it is judged.",
     )
-    samples: Annotated[int, Count()] = Field(
+    samples: Annotated[int, Count(at_most=1_000_000)] = Field(
         default=200,
         title="Initial states",
         description="Number of initial states in the search for attractors.",
