@@ -26,7 +26,7 @@ def claims_csv(judgements: Sequence[Judgement]) -> str:
     """One row per claim, values as text with their units."""
     rows = [
         {
-            "id": judgement.id,
+            "id": str(judgement.id),
             "where": judgement.figure,
             "claim": judgement.claim,
             "printed": printed_text(judgement),
@@ -101,7 +101,7 @@ def value_text(value: Computed, unit: str) -> str:
 
 def _record(judgement: Judgement) -> dict[str, Any]:
     return {
-        "id": judgement.id,
+        "id": str(judgement.id),
         "where": judgement.figure,
         "claim": judgement.claim,
         "printed": {finding.name: finding.printed for finding in judgement.findings},
