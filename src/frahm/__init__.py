@@ -35,6 +35,7 @@ _PUBLIC = {
     "AttractorSet": "frahm.attractors",
     "basin_map": "frahm.attractors",
     "worst_case": "frahm.attractors",
+    "modulated_response": "frahm.attractors",
     "WorstCase": "frahm.attractors",
 }
 

@@ -98,6 +98,15 @@ def test_motion_that_neither_settles_nor_escapes_is_called_unsettled():
     assert lost[0].basin_fraction == 1.0
 
 
+def test_nothing_attracts_where_nothing_dissipates():
+    conservative = frahm.System(
+        np.diag([1.0, 0.05]), np.zeros((2, 2)), np.diag([1.0, 0.0]), (0.01, 0.0),
+        [frahm.Element((-1, 1), frahm.Cubic(1.0))],
+    )  # fmt: skip
+    found = frahm.find_attractors(conservative, frequency=1.3, samples=8, periods=1200)
+    assert {a.kind for a in found if a.basin_fraction > 0} == {"unsettled"}
+
+
 def test_too_few_periods_leave_motions_unsettled():
     found = frahm.find_attractors(CASE, detuning=-0.144, samples=20, periods=30)
     assert sum(a.basin_fraction for a in found if a.kind == "unsettled") > 0.5

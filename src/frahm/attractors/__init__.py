@@ -3,6 +3,7 @@
 from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.attractors.basins import basin_map
 from frahm.attractors.finding import find_attractors
+from frahm.attractors.modulated import modulated_response
 from frahm.attractors.worst import WorstCase, worst_case
 
-__all__ = ["Attractor", "AttractorSet", "WorstCase", "basin_map", "find_attractors", "worst_case"]
+__all__ = ["Attractor", "AttractorSet", "WorstCase", "basin_map", "find_attractors", "modulated_response", "worst_case"]

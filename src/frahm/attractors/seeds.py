@@ -20,7 +20,7 @@ _PHASES = np.exp(0.5j * np.pi * np.arange(4))
 
 def seed_states(strobe: Stroboscope, responses: Sequence[PeriodicResponse]) -> Floats:
     """States (k, 2n) to start from; the first is rest."""
-    seeds = [np.zeros((1, 2 * strobe.system.size)), _jumps(strobe)]
+    seeds = [np.zeros((1, 2 * strobe.system.size)), jump_states(strobe)]
     for response in responses:
         if response.stable:
             continue
@@ -32,7 +32,7 @@ def seed_states(strobe: Stroboscope, responses: Sequence[PeriodicResponse]) -> F
     return np.asarray(found[np.all(np.abs(found) <= 1e6 * sizes, axis=1)])
 
 
-def _jumps(strobe: Stroboscope) -> Floats:
+def jump_states(strobe: Stroboscope) -> Floats:
     """States before and after the jumps of the slow invariant manifold, at four phases; none for other systems."""
     none = np.zeros((0, 2 * strobe.system.size))
     try:

@@ -25,6 +25,7 @@ _GROUP = 4096  # coordinates carried at a time: bounds the memory
 _FAR = 1e9  # times the size of everything seen at the start
 _ATTEMPTS = 8  # motions per call that may be tried as evidence of an attractor not known yet
 _REST = 3 * BLOCK  # periods after which a motion that was tried in vain may be tried again
+_CONSERVATIVE = 1e-9  # rate of contraction, over Omega, that rounding cannot tell from none
 _HIGHEST_MULTIPLE = 16
 _NEARLY_PERIODIC, _SAME = 0.02, 0.1  # distance of strobes, in sizes of the motion
 UNLABELLED = -1
@@ -73,6 +74,15 @@ class Settling:
     periods: int
     known: list[Orbit | Cloud] = field(default_factory=list)
     _attempts: int = 0
+
+    @property
+    def dissipative(self) -> bool:
+        """Whether the flow contracts volumes in state space; where it does not, nothing attracts."""
+        system = self.strobe.system
+        damping = np.array(system.damping)
+        for element in system.elements:
+            damping += element.law.damping * np.outer(element.direction, element.direction)
+        return bool(np.trace(np.linalg.solve(system.mass, damping)) > _CONSERVATIVE * self.strobe.frequency)
 
     @property
     def orbits(self) -> list[Orbit]:
@@ -155,7 +165,7 @@ class Settling:
         self, result: Settled, active: np.ndarray, history: Floats, tried: np.ndarray
     ) -> tuple[np.ndarray, Floats]:
         """Try motions that have become stationary as evidence of an attractor not known yet."""
-        at = 0
+        at = 0 if self.dissipative else len(active)
         while at < len(active) and self._attempts > 0:
             i = active[at]
             if result.periods[i] - tried[i] < _REST:

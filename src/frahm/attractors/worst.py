@@ -31,8 +31,8 @@ _SPREAD = 9  # frequencies spread over the window
 _SPECIAL = 10  # special points of the response curve looked at on both sides, the largest first
 _BESIDE = 1e-3  # of the window: how far beside a special point
 _CLOSE = 5e-4  # of the window: frequencies nearer than this are one
-_FINE = 5e-3  # of the window: how near its neighbours the worst is looked at in the end
-_ROUNDS = 8
+_FINE = 2e-3  # of the window: how near its neighbours the worst is looked at in the end
+_ROUNDS = 9
 
 Size = Callable[[Attractor], float]
 
@@ -93,7 +93,7 @@ def worst_case(
     """Largest pipe and relative peak over all attractors with a basin fraction of at least `min_basin`.
 
     The frequencies looked at are spread over the window, stand beside the special points of the exact response curve
-    and at its stable maxima; around the worst they are then halved until it is known to 0.5 % of the window.
+    and at its stable maxima; around the worst they are then halved until it is known to 0.2 % of the window.
 
     Parameters
     ----------
@@ -254,7 +254,7 @@ def _verdict(
                 share = f"{100 * attractor.basin_fraction:.2g} % of the motions at Omega = {at:.6g} rad/s"
                 doubts.append(f"{share} are unsettled: {attractor.outcome.value}")
     if any(_gaps(surveys, at, _FINE * (hi - lo)) for at in (W, W_relative)):
-        doubts.append("The worst was not bracketed to 0.5 % of the window.")
+        doubts.append("The worst was not bracketed to 0.2 % of the window.")
     possible = [a.pipe_peak for s in surveys.values() for a in s if a.basin_interval[1] >= min_basin]
     return WorstCase(
         pipe_peak=worst.pipe_peak,

@@ -21,7 +21,7 @@ def test_exponent_of_uedas_chaos():
     states = strobe.run(np.random.default_rng(0).uniform(-2, 2, (8, 2)), 200).states
     exponent = lyapunov(strobe, states)
     assert exponent.chaotic
-    assert 0.08 < exponent.value < 0.13  # 0.1034 in Sprott, Chaos and Time-Series Analysis (2003), for k = 0.05, B = 7.5
+    assert 0.08 < exponent.value < 0.13  # 0.1034: Sprott, Chaos and Time-Series Analysis (2003)
     assert exponent.interval[0] < exponent.value < exponent.interval[1]
 
 
