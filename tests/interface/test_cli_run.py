@@ -95,7 +95,31 @@ def test_summary_has_the_shape_of_the_contract(summary):
     for check in summary["checks"]:
         assert set(check) == {"name", "status", "detail"}
         assert check["status"] == "pass"
-    assert {"pipe_peak_max", "special_points"} <= set(summary["results"]["response"]["slow-flow"])
+    for method in ("harmonic-balance", "slow-flow"):
+        assert {"pipe_peak_max", "special_points"} <= set(summary["results"]["response"][method])
+    exact = summary["results"]["response"]["harmonic-balance"]
+    assert {"inventory", "detached_curve_margin", "branches"} <= set(exact)
+
+
+def test_the_exact_response_is_near_the_slow_flow_and_holds_against_integration(summary):
+    exact, slow = (summary["results"]["response"][method] for method in ("harmonic-balance", "slow-flow"))
+    kinds = {"saddle-node": "saddle-node", "neimark-sacker": "hopf"}
+    for one, other in zip(exact["special_points"], slow["special_points"], strict=True):
+        assert kinds[one["kind"]] == other["kind"]
+        assert one["detuning"] == pytest.approx(other["detuning"], abs=2e-3)
+        assert one["pipe_peak"] == pytest.approx(other["pipe_peak"], rel=0.02)
+    assert summary["results"]["cross_check"]["largest_pipe_error"] < 1e-8
+    assert summary["results"]["cross_check"]["largest_relative_error"] < 1e-8
+
+
+def test_the_margin_is_in_summary_terminal_and_report(finished, summary):
+    ahead = summary["results"]["response"]["harmonic-balance"]["detached_curve_margin"]["next_event"]
+    assert ahead["kind"] == "birth"
+    (event,) = frahm.detached_curve_events(CASE, "force", (1.05, 1.15), detuning=(-0.2, 0.0), slices=2)
+    assert ahead["force"] == pytest.approx(event.value, rel=1e-6)
+    text = f"With {ahead['force'] - 1:.1%} more force a detached response curve appears"
+    assert text in finished[1].stdout
+    assert text in (finished[0] / "report.html").read_text(encoding="utf-8")
 
 
 def test_the_bare_pipe_is_as_in_the_paper(summary):
@@ -157,7 +181,9 @@ def test_arrays_open_with_xarray_and_with_h5py(finished, summary):
             assert {"units", "long_name"} <= set(variable.attrs), name
             assert variable.dtype.kind in "fiub", name
         peak = float(opened["response.pipe_peak"].max())
-        assert peak == summary["results"]["response"]["slow-flow"]["pipe_peak_max"]
+        assert peak == summary["results"]["response"]["harmonic-balance"]["pipe_peak_max"]
+        slow = summary["results"]["response"]["slow-flow"]["pipe_peak_max"]
+        assert float(opened["slow_flow.pipe_peak"].max()) == slow
         design = opened.isel({"motions.motion": 0})
         last = np.abs(design["motions.x1"].values[-2000:]).max()
         assert last == pytest.approx(summary["results"]["motions"][0]["pipe_peak"], rel=6e-3)
@@ -191,7 +217,7 @@ def test_the_report_stands_alone(finished, summary):
     assert '"displaylogo": false' in text
     assert summary["results"]["verdict"] in own
     assert own.index(summary["results"]["verdict"]) < own.index("<h2>")
-    for point in ("H1", "SN1", "SN2", CASE.digest, "✓ pass", "@media print"):
+    for point in ("H1", "NS1", "SN1", "SN2", CASE.digest, "✓ pass", "@media print"):
         assert point in own
 
 

@@ -1,6 +1,7 @@
 """Room `analysis`: one case through every step that tells something about it, stored and read back."""
 
 from frahm.analysis.analysis import STEPS, Analysis, Progress, Step, analyse
+from frahm.analysis.margin import margin_sentence
 from frahm.analysis.section import Check, Section, Work
 from frahm.analysis.store import load_analysis, read_summary, save_analysis
 
@@ -14,6 +15,7 @@ __all__ = [
     "Work",
     "analyse",
     "load_analysis",
+    "margin_sentence",
     "read_summary",
     "save_analysis",
 ]

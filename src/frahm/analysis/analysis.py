@@ -15,12 +15,14 @@ from frahm import __version__
 from frahm.analysis.cross_check import cross_check
 from frahm.analysis.linear import without_absorber
 from frahm.analysis.manifold import manifold
+from frahm.analysis.margin import detached_curve_margin
 from frahm.analysis.motions import SAMPLES_PER_PERIOD, motions
-from frahm.analysis.response import response
+from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import PERIODIC_BELOW
 from frahm.analysis.verdict import largest_motion, verdict
 from frahm.case import Case, load_case
+from frahm.harmonic_balance.branches import GOAL
 from frahm.time_integration.batch import TOLERANCE
 
 if TYPE_CHECKING:
@@ -41,10 +43,12 @@ class Step:
 # In this order; a step reads what the steps before it found. A further analysis is one more line here.
 STEPS = (
     Step("pipe without absorbers", without_absorber),
-    Step("response and special points", response),
+    Step("exact response by harmonic balance", exact_response),
+    Step("slow flow", slow_flow_response),
+    Step("births and merges of detached curves", detached_curve_margin),
     Step("slow manifold", manifold),
     Step("motions of the exact equations", motions),
-    Step("cross-check of slow flow and exact equations", cross_check),
+    Step("slow flow against harmonic balance against integration", cross_check),
     Step("largest motion", largest_motion),
 )
 
@@ -171,6 +175,7 @@ def _provenance(case: Case) -> dict[str, Any]:
         },
         "settings": {
             "slow_flow_form": case.analysis.form,
+            "harmonic_balance_residual": GOAL,
             "integration_tolerance": TOLERANCE,
             "integration_periods": case.analysis.periods,
             "samples_per_period": SAMPLES_PER_PERIOD,

@@ -1,15 +1,21 @@
-"""Closed-form response of linear systems: the bare pipe, and pipes whose absorbers are all linear."""
+"""Closed-form response of linear systems: the bare pipe, and pipes whose absorbers are all linear.
+
+An undamped resonance is part of it, with an infinite amplitude.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.linalg
 
+from frahm.analysis.curve_summary import summary_of
 from frahm.analysis.section import Section, Work
 from frahm.arrays import Complexes, Floats, labelled
 from frahm.case import Case
+from frahm.harmonic_balance import linear_growth
+from frahm.harmonic_balance.condensation import linear_part
+from frahm.response import ResponseCurve
 from frahm.systems import System, build_system
 
 if TYPE_CHECKING:
@@ -18,14 +24,9 @@ if TYPE_CHECKING:
 _POINTS = 2001
 
 
-def is_linear(system: System) -> bool:
-    """Whether every element has a linear spring."""
-    return all(element.law.is_linear for element in system.elements)
-
-
 def linear_amplitudes(system: System, frequency: Floats) -> Complexes:
     """Complex amplitudes X [m] with x = Re X e^{i Omega t}, shape (points, n); infinite at an undamped resonance."""
-    stiffness, damping = _matrices(system)
+    damping, stiffness = linear_part(system)
     W = np.asarray(frequency, dtype=float)[:, None, None]
     dynamic = stiffness - W**2 * system.mass + 1j * W * damping
     forcing = np.broadcast_to(system.forcing.astype(complex)[:, None], (*dynamic.shape[:2], 1))
@@ -45,7 +46,8 @@ def bare_resonance(case: Case) -> tuple[float, float]:
     """Largest amplitude of the pipe without absorbers [m] over all frequencies, and its frequency [rad/s]."""
     pipe = case.pipe
     if pipe.damping_ratio == 0:
-        return float("inf"), pipe.frequency
+        driven = np.any(build_system(case.without_absorbers()).forcing)
+        return float("inf") if driven else 0.0, pipe.frequency
     inside = 1 - 2 * pipe.damping_ratio**2
     frequency = pipe.frequency * float(np.sqrt(inside)) if inside > 0 else 1e-9 * pipe.frequency
     return float(bare_amplitude(case, frequency)[0]), frequency
@@ -78,24 +80,30 @@ def linear_response(work: Work) -> Section:
     detuning = np.linspace(lo, hi, _POINTS)
     X = linear_amplitudes(system, system.reference_frequency + detuning)
     pipe = _magnitude(X, system.output)
-    curve = _curve(detuning, system.reference_frequency, pipe)
-    if system.elements:
-        relative = _magnitude(X, system.elements[0].direction)
-        curve["relative_peak"] = labelled("point", relative, "largest relative displacement over a period", "m")
-    growth = _growth_rate(system)
-    stable = growth < 0
-    curve["stable"] = labelled("point", np.full(detuning.size, stable), "locally stable", "1")
-    curve["branch"] = labelled("point", np.zeros(detuning.size, dtype=int), "number of the branch", "1")
-    curve["piece"] = labelled("point", np.zeros(detuning.size, dtype=int), "piece of the branch inside the window", "1")
-    curve.attrs["method"] = "linear"
-    found = {"pipe_peak_max": float(np.max(pipe)), "special_points": [], "growth_rate": growth}
-    doubt = () if stable else (f"The linear response does not attract: the growth rate is {growth:.3g} 1/s.",)
+    relative = _magnitude(X, system.elements[0].direction if system.elements else np.zeros(system.size))
+    growth, none = linear_growth(system), np.zeros(_POINTS, dtype=int)
+    inventory = "All laws of the case are linear: the response is exact, and the only one."
+    curve = ResponseCurve(
+        frequency=system.reference_frequency + detuning, detuning=detuning, pipe_amplitude=pipe,
+        relative_amplitude=relative, pipe_peak=pipe, relative_peak=relative, branch=none, piece=none,
+        stable=np.full(_POINTS, growth < 0), growth_rate=np.full(_POINTS, growth), detached=(False,),
+        asymmetric=(False,), special_points=(), unverified=(), system=system.name,
+        settings={"method": "harmonic-balance", "harmonics": 1, "inventory": inventory},
+    )  # fmt: skip
+    found = summary_of(curve) | {"inventory": inventory, "harmonics": 1, "growth_rate": growth}
+    data = curve.to_dataset() if system.elements else _without_stroke(curve)
+    doubt = () if growth < 0 else (f"The linear response does not attract: the growth rate is {growth:.3g} 1/s.",)
     return Section(
-        results={"response": {"linear": found}},
-        data={"response": curve},
+        results={"response": {"harmonic-balance": found}},
+        data={"response": data},
         unverified=doubt,
-        notes=("All laws of the case are linear: the response is exact, and the only one.",),
+        notes=(inventory,),
     )
+
+
+def _without_stroke(curve: ResponseCurve) -> xr.Dataset:
+    """The curve of a pipe that carries nothing that could move relative to it."""
+    return curve.to_dataset().drop_vars(["relative_amplitude", "relative_peak", "special_relative_peak"])
 
 
 def _curve(detuning: Floats, reference: float, pipe: Floats) -> xr.Dataset:
@@ -108,25 +116,6 @@ def _curve(detuning: Floats, reference: float, pipe: Floats) -> xr.Dataset:
             "pipe_peak": labelled("point", pipe, "largest pipe displacement over a period", "m"),
         }
     )
-
-
-def _matrices(system: System) -> tuple[Floats, Floats]:
-    """K and C with the linear elements added."""
-    stiffness, damping = system.stiffness.copy(), system.damping.copy()
-    for element in system.elements:
-        n = np.outer(element.direction, element.direction)
-        stiffness = stiffness + float(element.law.coefficients[0]) * n
-        damping = damping + element.law.damping * n
-    return stiffness, damping
-
-
-def _growth_rate(system: System) -> float:
-    """Largest real part of the eigenvalues of the linear system [1/s]."""
-    stiffness, damping = _matrices(system)
-    zero, one = np.zeros((system.size, system.size)), np.eye(system.size)
-    A = np.block([[zero, one], [-stiffness, -damping]])
-    B = scipy.linalg.block_diag(one, system.mass)
-    return float(np.max(scipy.linalg.eigvals(A, B).real))
 
 
 def _magnitude(X: Complexes, row: Floats) -> Floats:

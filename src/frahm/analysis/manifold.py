@@ -22,7 +22,7 @@ def manifold(work: Work) -> Section:
     import xarray as xr
 
     if isinstance(work.slow_flow, str):
-        return Section(notes=() if not work.case.absorbers else (f"No slow manifold: {work.slow_flow}",))
+        return Section()
     relation = slow_manifold(work.slow_flow, work.slow_flow.omega)
     Z = np.linspace(0.0, _reach(relation), _POINTS)
     stable = np.ones(Z.size, dtype=int)

@@ -11,6 +11,7 @@ import numpy as np
 
 from frahm.analysis.linear import bare_amplitude
 from frahm.analysis.points import PointOfInterest, points_of_interest
+from frahm.analysis.ranges import growth_rates_at
 from frahm.analysis.section import FAIL, PASS, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import KINDS, envelope_of, judge
 from frahm.arrays import Floats, labelled
@@ -23,8 +24,10 @@ if TYPE_CHECKING:
 SAMPLES_PER_PERIOD = 32
 SLOW_SAMPLES = 8  # per period, of the slowly varying amplitudes
 _MOST_KEPT = 4000  # periods
+_MOST_POINTS = 12
 _TAIL = 0.25  # of the run
 _HARMONICS_SHOWN = 5.5
+_GROWN = 12.0  # exponent of a disturbance that has grown from rounding to something that shows
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,8 @@ class Motion:
 
 def motions(work: Work) -> Section:
     """Motions from rest at every point of interest."""
-    found = [_motion(work, point) for point in points_of_interest(work)]
+    points = points_of_interest(work)
+    found = [_motion(work, point) for point in points[:_MOST_POINTS]]
     unsettled = [motion for motion in found if motion.kind == "unsettled"]
     periods = work.case.analysis.periods
     doubts = tuple(
@@ -74,8 +78,15 @@ def motions(work: Work) -> Section:
         notes=(
             "Motions were integrated from rest only: another start can lead to another motion. "
             "Which motions last, and from which starts, is not searched here.",
+            *_left_out(points[_MOST_POINTS:]),
         ),
     )
+
+
+def _left_out(points: list[PointOfInterest]) -> Iterable[str]:
+    if points:
+        where = ", ".join(f"{point.detuning:.4g}" for point in points)
+        yield f"There are more detunings of interest than were integrated at; left out: {where} rad/s."
 
 
 def _motion(work: Work, point: PointOfInterest) -> Motion:
@@ -135,13 +146,11 @@ def _finished(found: list[Motion]) -> Check:
 
 
 def _expected(work: Work, found: list[Motion]) -> Iterable[Check]:
-    """Where the slow flow has no stable response, the exact motion must be modulated."""
-    from frahm.analysis.ranges import ranges_without_stable_response
-
+    """Where every periodic response is clearly unstable, the exact motion must be modulated."""
     if "response" not in work.done.data:
         return
-    ranges = ranges_without_stable_response(work.done.data["response"])
-    inside = [m for m in found if any(lo < m.point.detuning < hi for lo, hi in ranges)]
+    curve = work.done.data["response"]
+    inside = [m for m in found if _leaves(growth_rates_at(curve, m.point.detuning), m)]
     if not inside:
         return
     name = "Where no periodic response is stable, the motion is modulated"
@@ -149,6 +158,12 @@ def _expected(work: Work, found: list[Motion]) -> Iterable[Check]:
     kinds = {m.kind for m in inside}
     status = PASS if kinds == {"modulated"} else (FAIL if "periodic" in kinds else UNVERIFIED)
     yield Check(name, status, f"Integrated: {text}.")
+
+
+def _leaves(growth: Floats, motion: Motion) -> bool:
+    """Whether within half the run a motion must have left every periodic response it may have come near."""
+    half = 0.5 * motion.history.periods * 2 * np.pi / motion.history.frequency
+    return bool(growth.size and np.min(growth) * half > _GROWN)
 
 
 def _motions_dataset(found: list[Motion]) -> xr.Dataset:

@@ -50,7 +50,7 @@ def _candidates(work: Work) -> Iterator[PointOfInterest]:
     named = (
         ("no-stable-response", "middle of a range without a stable response", ranges_without_stable_response(curve)),
         ("unstable-range", "middle of a range with an unstable response", unstable_ranges(curve)),
-        ("detached-branch", "middle of a detached branch", detached_ranges(curve)),
+        ("detached-branch", "middle of a range with a detached branch", detached_ranges(curve)),
     )
     for key, reason, ranges in named:
         for number, (lo, hi) in enumerate(ranges, start=1):

@@ -1,77 +1,73 @@
-"""Step `response`: every branch of periodic motion over the window of the case, with its special points."""
+"""Steps `exact_response` and `slow_flow_response`: every periodic response over the window, exactly and in theory."""
 
 from __future__ import annotations
 
-from typing import Any
-
-from frahm.analysis.linear import is_linear, linear_response
+from frahm.analysis.curve_summary import summary_of
+from frahm.analysis.linear import linear_response
 from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
+from frahm.errors import ParameterError
+from frahm.harmonic_balance import is_linear
 from frahm.response import ResponseCurve, SpecialPoint, frequency_response
 
 _POINTS = 2000
+_LISTED = 5  # in a sentence
 
 
-def response(work: Work) -> Section:
-    """The response over the window: exact for a linear system, by the slow flow for one mode with one cubic sink."""
+def exact_response(work: Work) -> Section:
+    """Every periodic response of the exact equations over the window, by harmonic balance; any system."""
     if is_linear(work.system):
         return linear_response(work)
-    if isinstance(work.slow_flow, str):
-        why = f"The response over frequency was not computed. {work.slow_flow}"
-        return Section(unverified=(why,))
-    analysis = work.case.analysis
-    curve = frequency_response(
-        work.system, detuning=analysis.detuning, method="slow-flow", form=analysis.form, points=_POINTS
-    )
+    try:
+        curve = frequency_response(work.system, detuning=work.case.analysis.detuning)
+    except ParameterError as error:
+        return Section(unverified=(f"The exact response over frequency was not computed. {error}",))
+    settings = {"inventory": curve.settings["inventory"], "harmonics": curve.settings["harmonics"]}
     return Section(
-        results={"response": {"slow-flow": _summary(curve)}},
+        results={"response": {"harmonic-balance": summary_of(curve) | settings}},
         data={"response": curve.to_dataset()},
-        checks=(_located(curve),),
+        checks=(_exactly_located(curve),),
         unverified=curve.unverified,
-        notes=("The slow flow keeps one harmonic: its amplitudes are approximations, tested by integration.",),
+        notes=(curve.settings["inventory"],),
     )
 
 
-def _summary(curve: ResponseCurve) -> dict[str, Any]:
-    peak, frequency = curve.largest()
-    stable, at = curve.largest(stable_only=True)
-    reference = float(curve.frequency[0] - curve.detuning[0])
-    return {
-        "pipe_peak_max": peak,
-        "pipe_peak_max_detuning": frequency - reference,
-        "stable_pipe_peak_max": stable,
-        "stable_pipe_peak_max_detuning": at - reference,
-        "form": curve.settings["form"],
-        "special_points": [_point(point) for point in curve.special_points],
-        "branches": [_branch(branch) for branch in curve.branches],
-    }
+def slow_flow_response(work: Work) -> Section:
+    """Every branch of the slow flow of one mode with one cubic sink: the theory beside the exact response."""
+    if isinstance(work.slow_flow, str):
+        return Section(notes=(f"No slow flow and no slow manifold: {work.slow_flow}",) if work.case.absorbers else ())
+    analysis = work.case.analysis
+    try:
+        curve = frequency_response(
+            work.system, detuning=analysis.detuning, method="slow-flow", form=analysis.form, points=_POINTS
+        )
+    except ParameterError as error:
+        return Section(notes=(f"No slow flow beside the exact response: {error}",))
+    return Section(
+        results={"response": {"slow-flow": summary_of(curve) | {"form": curve.settings["form"]}}},
+        data={"slow_flow": curve.to_dataset()},
+        checks=(_separated(curve),),
+        notes=("The slow flow keeps one harmonic: its amplitudes are approximations, measured by the exact response.",),
+    )
 
 
-def _point(point: SpecialPoint) -> dict[str, Any]:
-    return {
-        "kind": point.kind,
-        "detuning": point.detuning,
-        "frequency": point.frequency,
-        "pipe_peak": point.pipe_peak,
-        "relative_peak": point.relative_peak,
-        "branch": point.branch,
-        "interval": list(point.interval),
-        "status": point.status,
-    }
+def _exactly_located(curve: ResponseCurve) -> Check:
+    name = "Special points of the exact response are located"
+    doubtful = [p for p in curve.special_points if p.status != "located"]
+    if doubtful:
+        return Check(name, UNVERIFIED, f"Seen but not located: {_places(doubtful)}.")
+    branches = f"{len(curve.branches)} {'branch' if len(curve.branches) == 1 else 'branches'}"
+    counted = "the number of unstable Floquet multipliers agrees on both sides of each"
+    return Check(name, PASS, f"{len(curve.special_points)} special points on {branches}; {counted}.")
 
 
-def _branch(branch: Any) -> dict[str, Any]:
-    return {
-        "number": branch.number,
-        "detached": bool(branch.detached),
-        "detuning": [float(branch.detuning.min()), float(branch.detuning.max())],
-        "pipe_peak_max": float(branch.pipe_peak.max()),
-    }
+def _places(points: list[SpecialPoint]) -> str:
+    shown = ", ".join(f"{p.kind} at {p.detuning:.5g} rad/s" for p in points[:_LISTED])
+    return shown + (f" and {len(points) - _LISTED} more" if len(points) > _LISTED else "")
 
 
-def _located(curve: ResponseCurve) -> Check:
+def _separated(curve: ResponseCurve) -> Check:
     points, doubtful = curve.special_points, [p for p in curve.special_points if p.status != "located"]
     name = "Special points of the slow flow are located and proven complete"
     if doubtful:
-        where = ", ".join(f"{p.kind} at {p.detuning:.5g} rad/s" for p in doubtful)
-        return Check(name, UNVERIFIED, f"Not separated from their neighbours: {where}.")
+        return Check(name, UNVERIFIED, f"Not separated from their neighbours: {_places(doubtful)}.")
     return Check(name, PASS, f"All {len(points)} saddle-node and Hopf points were found by subdivision of the window.")

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from frahm.analysis.margin import margin_sentence
 from frahm.analysis.section import Section, Work
 
 
@@ -51,7 +52,6 @@ def _from_response(work: Work) -> list[dict[str, Any]]:
     if "response" not in work.done.data:
         return []
     curve = work.done.data["response"]
-    method = curve.attrs["method"]
     names = [name for name in ("pipe_peak", "relative_peak") if name in curve]
     stable = curve["stable"].values.astype(bool)
     places = {int(np.argmax(np.where(stable, curve[name].values, -np.inf))) for name in names} if stable.any() else ()
@@ -61,7 +61,7 @@ def _from_response(work: Work) -> list[dict[str, Any]]:
             "relative_peak": float(curve["relative_peak"].values[i]) if "relative_peak" in curve else None,
             "detuning": float(curve["detuning"].values[i]),
             "kind": "periodic",
-            "source": {"linear": "linear response"}.get(method, f"stable response by {method}"),
+            "source": "stable response by harmonic balance",
         }
         for i in places
     ]
@@ -69,7 +69,7 @@ def _from_response(work: Work) -> list[dict[str, Any]]:
 
 def verdict(results: dict[str, Any], failed: int, unverified: int) -> str:
     """What the results come to, in two or three sentences."""
-    sentences = [*_about_largest(results), *_about_design_wind(results)]
+    sentences = [*_about_largest(results), *_about_design_wind(results), *_about_detached(results)]
     if failed:
         sentences.append(f"{_count(failed, 'check')} failed.")
     if unverified:
@@ -107,6 +107,12 @@ def _about_design_wind(results: dict[str, Any]) -> list[str]:
     )
     against = f", against {_length(bare)} without an absorber" if bare is not None and math.isfinite(bare) else ""
     return [f"{text}{against} ({motion['kind']})."]
+
+
+def _about_detached(results: dict[str, Any]) -> list[str]:
+    exact = results.get("response", {}).get("harmonic-balance", {})
+    sentence = margin_sentence(exact.get("detached_curve_margin"))
+    return [sentence] if sentence else []
 
 
 def _length(value: float) -> str:

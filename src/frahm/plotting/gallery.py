@@ -34,7 +34,7 @@ def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[D
     if curve is not None:
         for quantity, name in (("pipe_peak", "response-pipe"), ("relative_peak", "response-absorber")):
             if quantity in curve:
-                yield name, partial(response_figure, curve, quantity, views, bare)
+                yield name, partial(response_figure, curve, quantity, views, bare, data.get("slow_flow"))
     for view in views:
         yield f"motion-{view.key}", partial(motion_figure, view)
     if "slow_manifold" in data:

@@ -9,8 +9,17 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from frahm.arrays import Floats
-from frahm.plotting.lines import KIND_NAMES, largest_finite, response_lines, special_marks, thinned
-from frahm.plotting.static import DETUNING_LABEL, QUANTITY_LABELS
+from frahm.plotting.lines import (
+    KIND_NAMES,
+    MOST_LABELS,
+    Line,
+    largest_finite,
+    lines_by_name,
+    response_lines,
+    special_marks,
+    thinned,
+)
+from frahm.plotting.static import DETUNING_LABEL, QUANTITY_LABELS, line_colour
 from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK
 from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
 
@@ -34,28 +43,37 @@ _COLOURS = {"x1": PIPE, "z": SINK}
 _FILLS = {"x1": "rgba(0, 114, 178, 0.25)", "z": "rgba(213, 94, 0, 0.22)"}
 
 
-def response_plot(curve: xr.Dataset, quantity: str, motions: list[MotionView], bare: xr.Dataset | None) -> go.Figure:
+def response_plot(
+    curve: xr.Dataset,
+    quantity: str,
+    motions: list[MotionView],
+    bare: xr.Dataset | None = None,
+    slow: xr.Dataset | None = None,
+) -> go.Figure:
     """Response over the detuning; see `frahm.plotting.static.response_figure`."""
     figure = go.Figure()
-    named: set[str] = set()
-    for line in response_lines(curve, quantity):
-        look = {"color": SINK if line.detached else PIPE, "dash": "solid" if line.stable else "dash", "width": 2}
-        x, y = _small(line.x), _small(line.y)
-        figure.add_scatter(
-            x=x, y=y, mode="lines", line=look, name=line.name, legendgroup=line.name, showlegend=line.name not in named,
-            hovertemplate="σ %{x:.4f} rad/s<br>%{y:.4g} m",
-        )  # fmt: skip
-        named.add(line.name)
+    for name, line in lines_by_name(response_lines(curve, quantity)).items():
+        _add_line(figure, line, line_colour(line), 2.0, name)
+    if slow is not None:
+        for i, line in enumerate(lines_by_name(response_lines(slow, quantity)).values()):
+            _add_line(figure, line, INK, 0.8, "slow flow", legendgroup="slow flow", showlegend=i == 0)
     if bare is not None and quantity == "pipe_peak":
         x, y = _small(bare["detuning"].values), _small(bare["pipe_peak"].values)
         dotted = {"color": BARE, "dash": "dot", "width": 1.5}
         figure.add_scatter(x=x, y=y, mode="lines", line=dotted, name="without absorber")
     top = max([largest_finite(curve[quantity].values), *_add_motions(figure, motions, quantity)])
     _add_special_points(figure, curve, quantity)
-    figure.update_layout(**_layout(440))
+    figure.update_layout(**_layout(520))
     figure.update_xaxes(title_text=DETUNING_LABEL)
     figure.update_yaxes(title_text=QUANTITY_LABELS[quantity], title_standoff=8, range=[0, 1.12 * top or 1.0])
     return figure
+
+
+def _add_line(figure: go.Figure, line: Line, colour: str, width: float, name: str, **more: Any) -> None:
+    look = {"color": colour, "dash": "solid" if line.stable else "dash", "width": width}
+    hover = "σ %{x:.4f} rad/s<br>%{y:.4g} m"
+    x, y = _small(line.x), _small(line.y)
+    figure.add_scatter(x=x, y=y, mode="lines", line=look, name=name, hovertemplate=hover, **more)
 
 
 def motion_plot(motion: MotionView) -> go.Figure:
@@ -141,13 +159,14 @@ def _add_motions(figure: go.Figure, motions: list[MotionView], quantity: str) ->
 
 def _add_special_points(figure: go.Figure, curve: xr.Dataset, quantity: str) -> None:
     marks = special_marks(curve, quantity)
+    mode = "markers+text" if len(marks) <= MOST_LABELS else "markers"
     for kind in dict.fromkeys(mark.kind for mark in marks):
         chosen = [mark for mark in marks if mark.kind == kind]
         height = "bottom" if kind == "saddle-node" else "top"
         figure.add_scatter(
-            x=[m.x for m in chosen], y=[m.y for m in chosen], text=[m.label for m in chosen], mode="markers+text",
+            x=[m.x for m in chosen], y=[m.y for m in chosen], text=[m.label for m in chosen], mode=mode,
             textposition=[f"{height} {'right' if m.x > 0 else 'left'}" for m in chosen], name=KIND_NAMES[kind],
-            marker={"symbol": _SYMBOLS[kind], "size": 9, "color": INK},
+            marker={"symbol": _SYMBOLS[kind], "size": 9, "color": INK}, cliponaxis=False,
         )  # fmt: skip
 
 

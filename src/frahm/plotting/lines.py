@@ -27,6 +27,7 @@ KIND_NAMES = {
     "period-doubling": "period doubling",
     "branch-point": "branch point",
 }
+MOST_LABELS = 16  # special points: with more of them the labels would hide what they name
 
 
 @dataclass(frozen=True)
@@ -37,11 +38,13 @@ class Line:
     y: Floats
     stable: bool
     detached: bool
+    asymmetric: bool = False
 
     @property
     def name(self) -> str:
         """What a legend says."""
-        return ("detached branch, " if self.detached else "") + ("stable" if self.stable else "unstable")
+        kind = "asymmetric branch, " if self.asymmetric else "detached branch, " if self.detached else ""
+        return kind + ("stable" if self.stable else "unstable")
 
 
 @dataclass(frozen=True)
@@ -57,13 +60,28 @@ class Mark:
 def response_lines(curve: xr.Dataset, quantity: str) -> list[Line]:
     """Stretches of every branch; neighbouring stretches share a point, so that no gap is seen between them."""
     branch, piece = curve["branch"].values, curve["piece"].values
-    stable = curve["stable"].values.astype(bool)
-    detached = curve["detached"].values.astype(bool) if "detached" in curve else np.zeros(branch.max() + 1, dtype=bool)
+    stable, detached, asymmetric = (curve[name].values.astype(bool) for name in ("stable", "detached", "asymmetric"))
     x, y = curve["detuning"].values, curve[quantity].values
     return [
-        Line(x[part], y[part], holds, bool(detached[branch[part.start]]))
+        Line(x[part], y[part], holds, bool(detached[branch[part.start]]), bool(asymmetric[branch[part.start]]))
         for part, holds in stretches(stable, piece, branch)
     ]
+
+
+def lines_by_name(lines: list[Line]) -> dict[str, Line]:
+    """Lines of the same name as one, with gaps (NaN) between them: one entry of a legend each, stable ones first."""
+    named: dict[str, list[Line]] = {}
+    for line in sorted(lines, key=lambda line: (line.asymmetric, line.detached, not line.stable)):
+        named.setdefault(line.name, []).append(line)
+
+    def joined(parts: list[Floats]) -> Floats:
+        return np.concatenate([np.append(part, np.nan) for part in parts])[:-1]
+
+    return {
+        name: Line(joined([s.x for s in same]), joined([s.y for s in same]), same[0].stable, same[0].detached,
+                   same[0].asymmetric)
+        for name, same in named.items()
+    }  # fmt: skip
 
 
 def stretches(stable: np.ndarray, *numbers: np.ndarray) -> list[tuple[slice, bool]]:

@@ -7,8 +7,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.patheffects import withStroke
 
-from frahm.plotting.lines import KIND_NAMES, largest_finite, response_lines, special_marks, thinned
-from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK, UNSTABLE_DASHES, new_figure
+from frahm.plotting.lines import (
+    KIND_NAMES,
+    MOST_LABELS,
+    Line,
+    largest_finite,
+    lines_by_name,
+    response_lines,
+    special_marks,
+    thinned,
+)
+from frahm.plotting.style import BARE, GREEN, INK, PAIR, PIPE, SINK, UNSTABLE_DASHES, new_figure
 from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
 
 if TYPE_CHECKING:
@@ -19,11 +28,16 @@ if TYPE_CHECKING:
 DETUNING_LABEL = "detuning σ = Ω - ω [rad/s]"
 QUANTITY_LABELS = {"pipe_peak": "pipe displacement x₁ [m]", "relative_peak": "relative displacement z [m]"}
 _SIGNAL_LOOKS: dict[str, tuple[str, Any, float]] = {"x1": (PIPE, "-", 1.4), "z": (SINK, (0, (3.0, 1.2)), 1.1)}
+_SLOW_LOOK: dict[str, Any] = {"color": INK, "linewidth": 0.6, "alpha": 0.8}
 MARKERS = {"saddle-node": "^", "hopf": "s", "neimark-sacker": "D", "period-doubling": "v", "branch-point": "P"}
 
 
 def response_figure(
-    curve: xr.Dataset, quantity: str, motions: list[MotionView] | None = None, bare: xr.Dataset | None = None
+    curve: xr.Dataset,
+    quantity: str,
+    motions: list[MotionView] | None = None,
+    bare: xr.Dataset | None = None,
+    slow: xr.Dataset | None = None,
 ) -> Figure:
     """Response over the detuning: stable solid, unstable dashed, special points, motions that were integrated.
 
@@ -37,26 +51,24 @@ def response_figure(
         Integrated motions, marked at their peak; a modulated one with the range of its peaks.
     bare : Dataset, optional
         Response without absorbers, drawn dotted; the axis is scaled for the rest.
+    slow : Dataset, optional
+        Response by the slow flow, a thin line.
     """
-    figure = new_figure()
+    figure = new_figure(160, 105)
     axes = figure.subplots()
     _draw_branches(axes, curve, quantity)
-    for mark in special_marks(curve, quantity):
-        label = "_" if mark.label[-1] != "1" else KIND_NAMES[mark.kind]
-        axes.plot(mark.x, mark.y, MARKERS[mark.kind], color=INK, markersize=5, linestyle="none", label=label)
-        right = mark.x > 0  # labels stand outside, the motions at resonance inside
-        offset = (7 if right else -6, -3 if mark.kind == "saddle-node" else 6)
-        axes.annotate(
-            mark.label, (mark.x, mark.y), offset, textcoords="offset points", va="center", fontsize=8,
-            ha="left" if right else "right", path_effects=[withStroke(linewidth=1.5, foreground="white")],
-        )  # fmt: skip
+    if slow is not None:
+        for i, line in enumerate(lines_by_name(response_lines(slow, quantity)).values()):
+            dashes = "-" if line.stable else UNSTABLE_DASHES
+            axes.plot(line.x, line.y, linestyle=dashes, label="_" if i else "slow flow", **_SLOW_LOOK)
+    _draw_special_points(axes, curve, quantity)
     top = largest_finite(curve[quantity].values)
     for motion in motions or []:
         top = max(top, _draw_motion(axes, motion, quantity))
     if bare is not None and quantity == "pipe_peak":
         axes.plot(bare["detuning"].values, bare["pipe_peak"].values, ":", color=BARE, label="without absorber")
-    axes.set(xlabel=DETUNING_LABEL, ylabel=QUANTITY_LABELS[quantity], ylim=(0, 1.18 * top or 1.0))
-    axes.legend(loc="best")
+    axes.set(xlabel=DETUNING_LABEL, ylabel=QUANTITY_LABELS[quantity], ylim=(0, 1.12 * top or 1.0))
+    figure.legend(loc="outside lower center", ncols=3)
     return figure
 
 
@@ -110,14 +122,32 @@ def manifold_figure(manifold: xr.Dataset, motion: MotionView | None = None, fold
     return figure
 
 
+def line_colour(line: Line) -> str:
+    """Colour of a line by the kind of its branch."""
+    return PAIR if line.asymmetric else SINK if line.detached else PIPE
+
+
 def _draw_branches(axes: Axes, curve: xr.Dataset, quantity: str) -> None:
-    named: set[str] = set()
-    for line in response_lines(curve, quantity):
-        axes.plot(
-            line.x, line.y, linestyle="-" if line.stable else UNSTABLE_DASHES, color=SINK if line.detached else PIPE,
-            label="_" if line.name in named else line.name,
+    for name, line in lines_by_name(response_lines(curve, quantity)).items():
+        dashes = "-" if line.stable else UNSTABLE_DASHES
+        axes.plot(line.x, line.y, linestyle=dashes, color=line_colour(line), label=name)
+
+
+def _draw_special_points(axes: Axes, curve: xr.Dataset, quantity: str) -> None:
+    """Special points with their labels, unless there are so many that labels would hide what they name."""
+    marks, named = special_marks(curve, quantity), set()
+    for mark in marks:
+        label = "_" if mark.kind in named else KIND_NAMES[mark.kind]
+        named.add(mark.kind)
+        axes.plot(mark.x, mark.y, MARKERS[mark.kind], color=INK, markersize=5, linestyle="none", label=label)
+        if len(marks) > MOST_LABELS:
+            continue
+        right = mark.x > 0  # labels stand outside, the motions at resonance inside
+        offset = (7 if right else -6, -3 if mark.kind == "saddle-node" else 6)
+        axes.annotate(
+            mark.label, (mark.x, mark.y), offset, textcoords="offset points", va="center", fontsize=8,
+            ha="left" if right else "right", path_effects=[withStroke(linewidth=1.5, foreground="white")],
         )  # fmt: skip
-        named.add(line.name)
 
 
 def _draw_motion(axes: Axes, motion: MotionView, quantity: str) -> float:
@@ -132,5 +162,6 @@ def _draw_motion(axes: Axes, motion: MotionView, quantity: str) -> float:
         axes.plot(motion.detuning, high, "o", markersize=5, markerfacecolor="none", color=GREEN, label=shown)
     else:
         axes.plot([motion.detuning] * 2, [low, high], "-", color=GREEN, linewidth=1.0)
-        axes.plot(motion.detuning, high, "D", markersize=4, color=GREEN, label=shown)
+        marker = "D" if motion.kind == "modulated" else "x"
+        axes.plot(motion.detuning, high, marker, markersize=4, color=GREEN, linestyle="none", label=shown)
     return high

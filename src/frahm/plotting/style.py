@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 # Okabe and Ito's palette. Meaning never hangs on colour alone: line style or marker says it too.
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
 INK, GREY = "#1a1a1a", "#6b6b6b"
-PIPE, SINK, BARE = BLUE, VERMILLION, GREY
+PIPE, SINK, BARE, PAIR = BLUE, VERMILLION, GREY, PURPLE
 UNSTABLE_DASHES = (0, (4.0, 2.0))
 
 _RULES: dict[Any, Any] = {

@@ -12,7 +12,7 @@ import plotly.graph_objects as go
 import plotly.offline
 from markupsafe import Markup
 
-from frahm.analysis import Analysis
+from frahm.analysis import Analysis, margin_sentence
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.plotting.gallery import save_figures
@@ -72,6 +72,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         headline=sentence,
         cards=cards(analysis.results),
         results=analysis.results,
+        margin=margin_of(analysis.results),
         tables=tables,
         views=views[:_MOST_MOTIONS],
         more_motions=max(0, len(views) - _MOST_MOTIONS),
@@ -82,13 +83,20 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
     )
 
 
+def margin_of(results: dict[str, Any]) -> str:
+    """The sentence on births and merges of detached curves; empty if they were not searched."""
+    exact = results.get("response", {}).get("harmonic-balance", {})
+    return margin_sentence(exact.get("detached_curve_margin"))
+
+
 def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
     """Interactive figures as JSON, by the same names as the figures on paper."""
     data, results = analysis.data, analysis.results
     figures: dict[str, go.Figure] = {}
     for name, quantity in (("response-pipe", "pipe_peak"), ("response-absorber", "relative_peak")):
         if "response" in data and quantity in data["response"]:
-            figures[name] = response_plot(data["response"], quantity, views, data.get("without_absorber"))
+            beside = data.get("without_absorber"), data.get("slow_flow")
+            figures[name] = response_plot(data["response"], quantity, views, *beside)
     for view in views[:_MOST_MOTIONS]:
         figures[f"motion-{view.key}"] = motion_plot(view)
     if "slow_manifold" in data:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
@@ -64,13 +64,14 @@ def derived_rows(case: Case) -> list[tuple[str, str, str]]:
     return rows
 
 
-def special_point_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def special_point_rows(analysis: Analysis, method: str = "harmonic-balance") -> list[tuple[str, ...]]:
     """Label, kind, detuning, frequency in Hz, pipe peak, stroke, branch, status of every special point."""
     from frahm.plotting.lines import special_marks
 
-    if "response" not in analysis.data:
+    name = {"harmonic-balance": "response", "slow-flow": "slow_flow"}[method]
+    if name not in analysis.data:
         return []
-    found = analysis.results["response"][analysis.data["response"].attrs["method"]]
+    found = analysis.results["response"][method]
     detached = {b["number"] for b in found.get("branches", []) if b["detached"]}
     return [
         (
@@ -79,9 +80,30 @@ def special_point_rows(analysis: Analysis) -> list[tuple[str, ...]]:
             f"{point['branch']}{' (detached)' if point['branch'] in detached else ''}", point["status"],
         )
         for mark, point in zip(
-            special_marks(analysis.data["response"], "pipe_peak"), found["special_points"], strict=True
+            special_marks(analysis.data[name], "pipe_peak"), found["special_points"], strict=True
         )
     ]  # fmt: skip
+
+
+def has_asymmetric(results: dict[str, Any]) -> bool:
+    """Whether there is a branch without the symmetry of the equations."""
+    branches = results.get("response", {}).get("harmonic-balance", {}).get("branches", [])
+    return any(branch["asymmetric"] for branch in branches)
+
+
+def branch_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Number, kind, range of detuning, largest pipe peak, stability of every branch of the exact response."""
+    found = analysis.results.get("response", {}).get("harmonic-balance", {})
+    return [
+        (
+            str(branch["number"]),
+            " ".join(name for name in ("detached", "asymmetric") if branch[name]) or "main",
+            " … ".join(number(edge) for edge in branch["detuning"]),
+            number(branch["pipe_peak_max"]),
+            "yes" if branch["stable_anywhere"] else "no",
+        )
+        for branch in found.get("branches", [])
+    ]
 
 
 def motion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
@@ -100,17 +122,31 @@ def motion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     return rows
 
 
+def comparison_head(analysis: Analysis) -> list[str]:
+    """Column heads of `comparison_rows`."""
+    return ["σ [rad/s]", *(head for head, _, _ in _comparisons(analysis))]
+
+
 def comparison_rows(analysis: Analysis) -> list[tuple[str, ...]]:
-    """Slow flow against the exact equations, response by response, in order of the detuning."""
+    """Peaks by three methods and their differences, response by response, in order of the detuning."""
     if "cross_check" not in analysis.data:
         return []
     table = analysis.data["cross_check"].sortby("detuning")
-    names = ("detuning", "slow_pipe_peak", "pipe_peak", "slow_relative_peak", "relative_peak")
-    columns = [[number(float(value)) for value in table[name].values] for name in names]
-    errors = [[f"{value:+.2%}" for value in table[name].values] for name in ("pipe_error", "relative_error")]
-    stays = ["yes" if value else "no" for value in table["steady"].values]
-    sigma, slow_pipe, pipe, slow_stroke, stroke = columns
-    return list(zip(sigma, slow_pipe, pipe, errors[0], slow_stroke, stroke, errors[1], stays, strict=True))
+    columns = [[form(float(value)) for value in table[name].values] for _, name, form in _comparisons(analysis)]
+    return list(zip([number(float(sigma)) for sigma in table["detuning"].values], *columns, strict=True))
+
+
+def _comparisons(analysis: Analysis) -> list[tuple[str, str, Callable[[float], str]]]:
+    """Head, variable and form of every column that is there."""
+    columns: list[tuple[str, str, Callable[[float], str]]] = []
+    for name, text in (("pipe", "Pipe"), ("relative", "Stroke")):
+        columns += [
+            (f"{text}, harmonic balance [m]", f"{name}_peak", lambda value: number(value, 6)),
+            ("Off integration by", f"{name}_error", lambda value: f"{value:+.1e}"),
+            (f"{text}, slow flow [m]", f"slow_{name}_peak", number),
+            ("Off by", f"slow_{name}_error", lambda value: f"{value:+.2%}"),
+        ]
+    return [column for column in columns if column[1] in analysis.data["cross_check"]]
 
 
 def check_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:

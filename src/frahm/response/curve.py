@@ -57,10 +57,13 @@ class Branch:
         0 holds the smallest response at the lower edge of the window.
     detached : bool
         Whether the branch is not connected to the one that comes from low frequency.
+    asymmetric : bool
+        Whether the motion lacks the symmetry x(t + T/2) = -x(t) of the equations; its mirror image is another response.
     """
 
     number: int
     detached: bool
+    asymmetric: bool
     frequency: Floats
     detuning: Floats
     pipe_amplitude: Floats
@@ -90,8 +93,8 @@ class ResponseCurve:
         Whether the response is locally stable.
     growth_rate : ndarray
         Largest growth rate of a disturbance [1/s].
-    detached : tuple of bool
-        For every branch.
+    detached, asymmetric : tuple of bool
+        For every branch, see `Branch`; of a mirrored pair of asymmetric branches one is listed.
     special_points : tuple of SpecialPoint
         Ascending in frequency.
     unverified : tuple of str
@@ -113,6 +116,7 @@ class ResponseCurve:
     stable: np.ndarray
     growth_rate: Floats
     detached: tuple[bool, ...]
+    asymmetric: tuple[bool, ...]
     special_points: tuple[SpecialPoint, ...]
     unverified: tuple[str, ...]
     settings: dict[str, Any] = field(default_factory=dict)
@@ -127,7 +131,7 @@ class ResponseCurve:
         on = self.branch == number
         names = ("frequency", "detuning", "pipe_amplitude", "relative_amplitude", "pipe_peak", "relative_peak")
         columns = {name: getattr(self, name)[on] for name in (*names, "stable", "growth_rate", "piece")}
-        return Branch(number=number, detached=self.detached[number], **columns)
+        return Branch(number=number, detached=self.detached[number], asymmetric=self.asymmetric[number], **columns)
 
     def largest(self, *, stable_only: bool = False) -> tuple[float, float]:
         """Largest pipe peak [m] on the curve and its frequency [rad/s]; NaN if no point qualifies."""
@@ -169,9 +173,8 @@ class ResponseCurve:
         for name, (data, long_name, units) in special.items():
             dtype = int if name in integer else (bool if name == "special_located" else float)
             variables[name] = labelled("special_point", np.array(data, dtype=dtype), long_name, units)
-        variables["detached"] = labelled(
-            "branch_number", np.array(self.detached, dtype=bool), "branch is detached", "1"
-        )
+        for name, values in (("detached", self.detached), ("asymmetric", self.asymmetric)):
+            variables[name] = labelled("branch_number", np.array(values, dtype=bool), f"branch is {name}", "1")
         attributes = {
             "title": "frequency response",
             "system": self.system,

@@ -75,6 +75,7 @@ def _assembled(system: System, tracks: list[Track], settings: dict[str, Any]) ->
         stable=growth < 0,
         growth_rate=growth,
         detached=tuple(_is_detached(track, tracks) for track in tracks),
+        asymmetric=tuple(track.parent is not None for track in tracks),
         special_points=tuple(sorted(special, key=lambda p: p.frequency)),
         unverified=tuple(doubtful),
         settings=settings,
@@ -98,13 +99,15 @@ def _growth(track: Track) -> Floats:
 def _linear_curve(system: System, lo: float, hi: float, settings: dict[str, Any]) -> ResponseCurve:
     inside = system.natural_frequencies[(system.natural_frequencies > lo) & (system.natural_frequencies < hi)]
     W = np.unique(np.concatenate([np.linspace(lo, hi, _LINEAR_POINTS), inside]))
-    X = linear_response(system, W)
+    driven = bool(np.any(system.forcing))
+    X = linear_response(system, W) if driven else np.zeros((W.size, system.size))
     first = system.elements[0].direction if system.elements else np.zeros(system.size)
     pipe, relative = np.abs(X @ system.output), np.abs(X @ first)
     growth = np.full(W.size, linear_growth(system))
     none = np.zeros(W.size, int)
-    settings["inventory"] = "A linear system has one periodic response at every frequency."
+    one = "A linear system has one periodic response at every frequency."
+    settings["inventory"] = one if driven else "Nothing drives the system: the response is its rest."
     return ResponseCurve(
         W, detuning_of(system, W), pipe, relative, pipe, relative, none, none, growth < 0, growth,
-        (False,), (), (), settings, system.name,
+        (False,), (False,), (), (), settings, system.name,
     )  # fmt: skip

@@ -5,46 +5,161 @@ import pytest
 import xarray as xr
 
 import frahm
-from frahm.analysis import STEPS, Work, analyse, load_analysis, save_analysis
+from frahm.analysis import STEPS, Work, analyse, load_analysis, margin_sentence, save_analysis
 from frahm.analysis import analysis as analysis_module
-from frahm.analysis.cross_check import cross_check, equilibrium
-from frahm.analysis.response import response
+from frahm.analysis import cross_check as cross_check_module
+from frahm.analysis.cross_check import cross_check
+from frahm.analysis.margin import detached_curve_margin
+from frahm.analysis.response import exact_response, slow_flow_response
+from frahm.reproduction.motions import equilibrium_state
 from frahm.slow_flow import slow_flow_of
 from frahm.slow_flow.motion import slow_velocity
+from frahm.time_integration import integrate_batch
 
 CASE = frahm.load_case("jacket-pipe")
 
 
+SINK = CASE.to_dict()["absorbers"][0]
+POLYNOMIAL = {"name": "p", "mass": 4.94, "law": {"kind": "polynomial", "coefficients": [10, 5, 9e4], "damping": 2}}
+TUNED = {"name": "tuned", "mass": 4.94, "law": {"kind": "linear", "stiffness": 114.0, "damping": 4.0}}
+
+
+def with_absorbers(*absorbers):
+    return frahm.load_case(CASE.to_dict() | {"absorbers": list(absorbers)})
+
+
+def checks_of(section):
+    return {check.name: check for check in section.checks}
+
+
+def after_responses(case):
+    work = Work(case)
+    for step in (exact_response, slow_flow_response):
+        work = work.with_section(step(work))
+    return work
+
+
 @pytest.mark.parametrize("form", ["averaged", "paper"])
-def test_equilibrium_with_its_phase_is_at_rest_in_the_slow_flow(form):
+def test_state_of_an_equilibrium_is_at_rest_in_the_slow_flow(form):
     system = frahm.build_system(CASE)
     slow = slow_flow_of(system, form)
     curve = frahm.frequency_response(system, detuning=(-0.2, 0.2), method="slow-flow", form=form, points=9)
     for W, amplitude, pipe in zip(curve.frequency, curve.relative_amplitude, curve.pipe_amplitude, strict=True):
-        X, Z = equilibrium(slow, W, amplitude)
+        x1, v1, x2, v2 = equilibrium_state(slow, W, amplitude)
+        X, Z = x1 - 1j * v1 / W, (x2 - x1) - 1j * (v2 - v1) / W
         assert abs(Z) == pytest.approx(amplitude, rel=1e-7)
         assert abs(X) == pytest.approx(pipe, rel=1e-7)
         velocity = slow_velocity(slow.code, *slow.host, slow.force, slow.kappa, W, X, Z)
         assert np.abs(velocity) == pytest.approx(0, abs=1e-9 * slow.omega * amplitude)
 
 
-def test_cross_check_sees_the_detached_branch_and_states_its_error():
+def test_special_points_of_the_exact_response_are_those_of_collocation():
+    # AUTO-07p at xi2 .0085: detuning and peak of x1; of the detached curve the detuning only
+    section = exact_response(Work(CASE.with_absorber(xi2=0.0085)))
+    found = section.results["response"]["harmonic-balance"]
+    collocation = [
+        ("saddle-node", -0.16923, None), ("saddle-node", -0.09507, None), ("neimark-sacker", -0.01347, 0.016055),
+        ("saddle-node", 0.05115, 0.014799), ("neimark-sacker", 0.05906, 0.016291), ("saddle-node", 0.13107, 0.010654),
+    ]  # fmt: skip
+    for point, (kind, detuning, peak) in zip(found["special_points"], collocation, strict=True):
+        assert point["kind"] == kind
+        assert point["detuning"] == pytest.approx(detuning, abs=6e-6)
+        assert peak is None or point["pipe_peak"] == pytest.approx(peak, abs=3e-6)
+    assert [branch["detached"] for branch in found["branches"]] == [False, True]
+    assert "first-harmonic roots" in found["inventory"]
+    assert checks_of(section)["Special points of the exact response are located"].status == "pass"
+
+
+def test_three_methods_agree_on_the_detached_branch_too():
     # shooting gives .0256, .0520 where the one-harmonic theory gives .0258, .0498 (sigma -.144)
-    started = Work(CASE.with_absorber(xi2=0.0085).with_analysis(detuning=(-0.18, 0.0)))
-    section = cross_check(started.with_section(response(started)))
+    section = cross_check(after_responses(CASE.with_absorber(xi2=0.0085).with_analysis(detuning=(-0.18, 0.0))))
     table = section.data["cross_check"]
-    on_detached = table["slow_relative_peak"].values > 0.045
+    on_detached = table["relative_peak"].values > 0.04
     assert np.sum(on_detached) >= 3
-    assert np.all(np.abs(table["pipe_error"].values[~on_detached]) < 0.004)
-    assert np.max(np.abs(table["relative_error"].values[on_detached])) == pytest.approx(0.045, abs=0.015)
+    assert np.sum(~on_detached) >= 7
+    for name in ("pipe_error", "relative_error"):
+        assert np.max(np.abs(table[name].values)) < 1e-8
+    assert np.max(np.abs(table["slow_pipe_error"].values[~on_detached])) < 0.004
+    assert np.max(np.abs(table["slow_relative_error"].values[on_detached])) == pytest.approx(0.045, abs=0.015)
+    assert {check.status for check in section.checks} == {"pass"}
+    assert section.results["cross_check"]["slow_flow"]["within_bounds"]
 
 
-def test_a_disagreement_is_a_failed_check_with_its_numbers():
-    stiff = CASE.with_absorber(kappa=1e12).with_analysis(periods=200)
-    started = Work(stiff)
-    (check,) = cross_check(started.with_section(response(started))).checks
+def test_an_error_of_the_slow_flow_is_its_limit_and_not_a_doubt():
+    section = cross_check(after_responses(CASE.with_absorber(xi2=0.0044).with_analysis(detuning=(-0.13, -0.08))))
+    check = checks_of(section)["The error of the slow flow against harmonic balance is known"]
+    assert check.status == "pass"
+    assert "the slow flow is at its limit, and the exact curve stands in its place" in check.detail
+    assert not section.results["cross_check"]["slow_flow"]["within_bounds"]
+    assert section.unverified == ()
+
+
+def test_a_disagreement_with_integration_fails_with_its_numbers(monkeypatch):
+    def coarse(*arguments, **settings):
+        return integrate_batch(*arguments, **settings | {"tolerance": 1e-3})
+
+    monkeypatch.setattr(cross_check_module, "integrate_batch", coarse)
+    check = checks_of(cross_check(after_responses(CASE)))["Harmonic balance and integration agree on stable responses"]
     assert check.status == "fail"
-    assert "rad/s the pipe peak is off by" in check.detail
+    assert "Peaks differ by more than 1e-06: " in check.detail
+    assert "rad/s" in check.detail
+
+
+@pytest.mark.parametrize("absorbers", [[], [TUNED], [POLYNOMIAL], [TUNED, SINK]], ids=lambda a: f"{len(a)} absorbers")
+def test_harmonic_balance_holds_against_integration_for_any_absorbers(absorbers):
+    case = with_absorbers(*absorbers)
+    section = cross_check(after_responses(case))
+    assert [check.status for check in section.checks] == ["pass"]
+    assert section.results["cross_check"]["points"] >= 6
+    assert ("relative_peak" in section.data["cross_check"]) == bool(absorbers)
+
+
+def test_an_undamped_resonance_is_left_out():
+    case = CASE.with_pipe(damping_ratio=0).without_absorbers().with_analysis(detuning=(-1e-9, 1e-9))
+    work = after_responses(case)
+    assert "does not attract" in work.done.unverified[0]
+    bounded = cross_check(work).data["cross_check"]["detuning"].values
+    assert bounded.size == 8  # at resonance there is no response
+    assert np.min(np.abs(bounded)) > 1e-10
+
+
+def margin_at(case):
+    work = detached_curve_margin(after_responses(case)).results
+    return work["response"]["harmonic-balance"]["detached_curve_margin"] if work else None
+
+
+def has_detached(case, factor):
+    """Whether the complete response under another lift has a detached branch."""
+    stronger = case.with_wind(lift_coefficient=0.4535 * factor)
+    return any(frahm.frequency_response(stronger, detuning=case.analysis.detuning).detached)
+
+
+def test_a_detached_curve_appears_just_beyond_the_margin():
+    case = CASE.with_analysis(detuning=(-0.2, 0.0))
+    margin = margin_at(case)
+    ahead = margin["next_event"]
+    assert (margin["exists"], margin["born"], ahead["kind"]) == (False, None, "birth")
+    assert not has_detached(case, 0.995 * ahead["force"])
+    assert has_detached(case, 1.005 * ahead["force"])
+    assert -0.2 < ahead["detuning"] < 0
+    assert f"With {ahead['force'] - 1:.1%} more force a detached response curve appears" in margin_sentence(margin)
+
+
+def test_the_force_at_which_an_existing_detached_curve_was_born():
+    case = CASE.with_absorber(xi2=0.0085).with_analysis(detuning=(-0.2, 0.0))
+    margin = margin_at(case)
+    assert margin["exists"]
+    assert not has_detached(case, 0.995 * margin["born"]["force"])
+    assert has_detached(case, 1.005 * margin["born"]["force"])
+    assert f"{1 - margin['born']['force']:.1%} less force" in margin_sentence(margin)
+
+
+def test_no_margin_where_no_detached_curve_can_be():
+    assert margin_at(with_absorbers(TUNED)) is None
+    assert margin_at(CASE.with_wind(lift_coefficient=0)) is None
+    soft = margin_at(CASE.with_absorber(kappa=24.425, xi2=0.0085).with_analysis(detuning=(-0.2, 0.2)))
+    assert (soft["exists"], soft["next_event"], soft["searched"]) == (False, None, [1.0, 3.0])
+    assert "up to 3 times the force" in margin_sentence(soft)
 
 
 def test_an_interruption_keeps_the_finished_steps(monkeypatch, tmp_path):
@@ -80,15 +195,11 @@ def test_an_analysis_is_the_same_after_a_round_trip(tmp_path):
             assert again.data[name][variable].attrs == dataset[variable].attrs
 
 
-@pytest.mark.parametrize("absorbers", ["two sinks", "polynomial"])
-def test_what_the_slow_flow_cannot_treat_is_said(absorbers):
-    sink = CASE.to_dict()["absorbers"][0]
-    polynomial = {"name": "p", "mass": 4.94, "law": {"kind": "polynomial", "coefficients": [10, 5, 9e4], "damping": 2}}
-    chosen = {"two sinks": [sink, sink | {"name": "b"}], "polynomial": [polynomial]}[absorbers]
-    done = analyse(CASE.to_dict() | {"absorbers": chosen})
-    assert not done.verified
-    assert "one mode with one cubic sink" in done.unverified[0]
-    assert len(done.results["motions"]) == 2
+def test_what_the_slow_flow_cannot_treat_has_an_exact_response():
+    done = analyse(with_absorbers(POLYNOMIAL).with_analysis(detuning=(0.0, 0.4)))
+    assert done.verified
+    assert set(done.results["response"]) == {"harmonic-balance"}
+    assert any("one mode with one cubic sink" in note for note in done.notes)
 
 
 @pytest.mark.parametrize(

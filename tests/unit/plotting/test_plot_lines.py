@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.plotting.lines import response_lines, special_marks, stretches, thinned
+from frahm.plotting.lines import Line, lines_by_name, response_lines, special_marks, stretches, thinned
 
 CURVE = frahm.frequency_response(
     frahm.load_case("jacket-pipe").with_absorber(xi2=0.0085), detuning=(-0.3, 0.3), method="slow-flow"
@@ -24,6 +24,19 @@ def test_lines_hold_every_point_and_mark_the_detached_branch():
     assert {line.stable for line in detached} == {True, False}
     assert min(line.x.min() for line in detached) == pytest.approx(-0.16809, abs=1e-4)
     assert max(line.x.max() for line in detached) == pytest.approx(-0.09737, abs=1e-4)
+
+
+def test_lines_of_one_name_are_one_line_with_gaps():
+    x = np.array([0.0, 1.0])
+    lines = [
+        Line(x, x, False, False),
+        Line(x, x + 1, True, True),
+        Line(x + 2, x, False, False),
+        Line(x, x, True, False),
+    ]
+    named = lines_by_name(lines)
+    assert list(named) == ["stable", "unstable", "detached branch, stable"]
+    np.testing.assert_equal(named["unstable"].x, [0, 1, np.nan, 2, 3])
 
 
 def test_marks_are_numbered_kind_by_kind():

@@ -1,0 +1,107 @@
+"""Step `detached_curve_margin`: how much more force it takes until a detached response curve appears or merges."""
+
+from __future__ import annotations
+
+import time
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from frahm.analysis.section import Section, Work
+from frahm.harmonic_balance import is_linear
+from frahm.response import DetachedCurveEvent, detached_curve_events
+
+UPWARD, DOWNWARD = (1.0, 1.6, 3.0), (1.0, 0.5, 0.2)  # factors on the force: the search ends with the first find
+_SLICES = 4
+_MOST_SADDLE_NODES = 16
+_MOST_SECONDS = 30.0
+
+
+def detached_curve_margin(work: Work) -> Section:
+    """Nearest births and merges of detached curves as the force alone grows or falls, within the window."""
+    if is_linear(work.system) or not np.any(work.system.forcing) or "response" not in work.done.data:
+        return Section()
+    curve = work.done.results["response"]["harmonic-balance"]
+    folds = sum(point["kind"] == "saddle-node" for point in curve["special_points"])
+    if folds > _MOST_SADDLE_NODES:
+        why = f"The response has {folds} saddle-nodes, more than can be followed over the force in reasonable time:"
+        return Section(notes=(f"{why} births and merges of detached curves were not searched.",))
+    exists = any(branch["detached"] and not branch["asymmetric"] for branch in curve["branches"])
+    end = time.monotonic() + _MOST_SECONDS
+    above, highest = _searched(work, UPWARD, end)
+    below, lowest = _searched(work, DOWNWARD, end) if exists else ([], 1.0)
+    ahead = min(above, key=lambda event: event.value, default=None)
+    born = max((e for e in below if e.direction > 0), key=lambda event: event.value, default=None)
+    found = {
+        "exists": exists,
+        "next_event": None if ahead is None else _described(work, ahead),
+        "born": None if born is None else _described(work, born),
+        "searched": [lowest, highest],
+    }
+    late = time.monotonic() > end
+    note = f"The search for births and merges of detached curves took long: it ended at {highest:g} times the force."
+    return Section(
+        results={"response": {"harmonic-balance": curve | {"detached_curve_margin": found}}},
+        notes=(note,) if late else (),
+    )
+
+
+def _searched(work: Work, edges: tuple[float, ...], end: float) -> tuple[list[DetachedCurveEvent], float]:
+    """Events in the first stretch of force factors that has any, and the factor up to which was searched."""
+    reached = edges[0]
+    for near, far in pairwise(edges):
+        if time.monotonic() > end:
+            return [], reached
+        bounds, window = (min(near, far), max(near, far)), work.case.analysis.detuning
+        events = detached_curve_events(work.system, "force", bounds, detuning=window, slices=_SLICES)
+        reached = far
+        if events:
+            return events, reached
+    return [], reached
+
+
+def _described(work: Work, event: DetachedCurveEvent) -> dict[str, Any]:
+    return {
+        "kind": event.kind,
+        "appears_upward": event.direction > 0,
+        "force": event.value,
+        "frequency": event.frequency,
+        "detuning": event.frequency - work.system.reference_frequency,
+        "pipe_peak": event.pipe_peak,
+        "relative_peak": event.relative_peak,
+    }
+
+
+def margin_sentence(margin: dict[str, Any] | None) -> str:
+    """What the margin means, for people; empty if it was not searched."""
+    if margin is None:
+        return ""
+    lo, hi = margin["searched"]
+    ahead, born = margin["next_event"], margin["born"]
+    sentences = []
+    if margin["exists"]:
+        origin = f"its birth was not found down to {lo:g} times the force"
+        if born is not None:
+            less, where = 1 - born["force"], _sigma(born)
+            origin = f"it would take {less:.1%} less force to be below its birth, at detuning {where}"
+        sentences.append(f"A detached response curve exists in the window; {origin}.")
+    if ahead is not None:
+        sentences.append(f"{_increase(ahead['force'])} {_event(ahead)}, at detuning {_sigma(ahead)}.")
+    elif not margin["exists"]:
+        sentences.append(f"No detached response curve was found up to {hi:g} times the force.")
+    return " ".join(sentences)
+
+
+def _event(event: dict[str, Any]) -> str:
+    if event["kind"] == "birth":
+        return f"a detached response curve {'appears' if event['appears_upward'] else 'vanishes'}"
+    return f"a detached response curve {'splits off' if event['appears_upward'] else 'merges with another one'}"
+
+
+def _increase(force: float) -> str:
+    return f"With {force - 1:.1%} more force" if force < 2 else f"At {force:.3g} times the force"
+
+
+def _sigma(event: dict[str, Any]) -> str:
+    return f"{event['detuning']:.3g} rad/s"
