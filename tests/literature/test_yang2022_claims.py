@@ -78,19 +78,19 @@ BESIDE = [
 
 @pytest.mark.parametrize(("row", "name", "expected", "near"), COMPUTED)
 def test_computed_value_is_that_of_the_prototype(reproduction, row, name, expected, near):
-    assert reproduction.claims[row]["computed"][name] == pytest.approx(expected, abs=near)
+    assert reproduction.claims[str(row)]["computed"][name] == pytest.approx(expected, abs=near)
 
 
 @pytest.mark.parametrize(("row", "name", "expected", "near"), BESIDE)
 def test_value_beside_is_that_of_the_prototype(reproduction, row, name, expected, near):
-    (value,) = [beside["value"] for beside in reproduction.claims[row]["beside"] if beside["name"] == name]
+    (value,) = [beside["value"] for beside in reproduction.claims[str(row)]["beside"] if beside["name"] == name]
     assert value == pytest.approx(expected, abs=near)
 
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: str(claim.id))
 def test_verdict(reproduction, claim):
     expected = {**dict.fromkeys(NOT_REPRODUCED, "not-reproduced"), **dict.fromkeys(MISPRINT, "misprint")}
-    assert reproduction.claims[claim.id]["verdict"] == expected.get(claim.id, "reproduced")
+    assert reproduction.claims[str(claim.id)]["verdict"] == expected.get(claim.id, "reproduced")
 
 
 def printed_numbers():
@@ -104,25 +104,25 @@ def printed_numbers():
 
 @pytest.mark.parametrize(("row", "printed"), list(printed_numbers()))
 def test_printed_number(reproduction, row, printed):
-    assert printed.tolerance.allows(printed.value, reproduction.claims[row]["computed"][printed.name])
+    assert printed.tolerance.allows(printed.value, reproduction.claims[str(row)]["computed"][printed.name])
 
 
 def test_both_values_stand_beside_each_other_where_they_differ(reproduction):
     for row in NOT_REPRODUCED | MISPRINT:
-        claim = reproduction.claims[row]
+        claim = reproduction.claims[str(row)]
         for value in CLAIMS[row - 1].printed:
             assert claim["printed"][value.name] == value.value
             assert f"{claim['computed'][value.name]:.4g}" in claim["explanation"]
 
 
 def test_exchanged_amplitudes_are_named(reproduction):
-    assert "exchanged: pipe 0.0493 m, relative 0.0557 m" in reproduction.claims[2]["explanation"]
+    assert "exchanged: pipe 0.0493 m, relative 0.0557 m" in reproduction.claims["2"]["explanation"]
 
 
 def test_exceptions_are_said_even_where_a_claim_holds(reproduction):
-    assert "a stable periodic response exists beside it" in reproduction.claims[3]["explanation"]
-    assert "does not hold for every stable motion" in reproduction.claims[17]["explanation"]
-    assert "at xi2 0.0044" in reproduction.claims[15]["explanation"]
+    assert "a stable periodic response exists beside it" in reproduction.claims["3"]["explanation"]
+    assert "does not hold for every stable motion" in reproduction.claims["17"]["explanation"]
+    assert "at xi2 0.0044" in reproduction.claims["15"]["explanation"]
 
 
 def test_equations_with_misprints_are_those_known(reproduction):
