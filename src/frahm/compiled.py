@@ -23,7 +23,7 @@ import numba
 # Contraction to fused multiply-add is allowed; NaN and infinity keep their meaning, because a NaN is how a kernel
 # says "there is no such root".
 _FLAGS = {"contract", "nsz", "arcp"}
-_IMPORT = re.compile(r"^\s*from (frahm[\w.]*) import \(?([^)\n]*(?:\n[^)]*\))?)|^\s*import (frahm[\w.]*)", re.MULTILINE)
+_IMPORT = re.compile(r"^\s*from (frahm[\w.]*) import (?:\(([^)]*)\)|([^(\n]+))|^\s*import (frahm[\w.]*)", re.MULTILINE)
 _ROOT = Path(__file__).resolve().parent
 
 
@@ -67,9 +67,10 @@ def _digest(module: str) -> str:
             continue
         seen[name] = source
         for found in _IMPORT.finditer(source):
-            package, names, plain = found.groups()
+            package, listed, names, plain = found.groups()
             base = package or plain
-            waiting += [base, *(f"{base}.{part.split()[0]}" for part in (names or "").split(",") if part.split())]
+            parts = (listed or names or "").split(",")
+            waiting += [base, *(f"{base}.{part.split()[0]}" for part in parts if part.split())]
     text = "".join(f"{name}\n{seen[name]}" for name in sorted(seen))
     return hashlib.sha256(text.encode()).hexdigest()
 

@@ -85,7 +85,7 @@ def test_responses_beside_the_detached_curve():
 
 
 def test_unstable_range_and_its_agreement_with_the_special_points(curves):
-    # kappa 367.38: nothing periodic is stable from the first Neimark-Sacker point to the fold where the low motion is born
+    # kappa 367.38: no stable response from the first Neimark-Sacker point to the fold where the low one is born
     curve = curves[367.38]
     inside = (curve.detuning > -0.0134) & (curve.detuning < 0.0511)
     assert not np.any(curve.stable[inside])

@@ -125,7 +125,7 @@ def _strongest(pb: Problem, scale: float, hi: float) -> tuple[float, float]:
 def _seeds_at(pb: Problem, W: float, e: Floats | None, scale: float, odd: bool, first_only: bool = False) -> list[Seed]:
     if e is not None:
         seeds = single_element_seeds(pb, W, e)
-        return [seed for seed in seeds if len(seed.harmonics) == 1] if first_only else seeds
+        return [seed for seed in seeds if 3 not in seed.harmonics] if first_only else seeds
     if first_only:
         S, F = stiffness_at(pb, 1, W)
         return [Seed(W, {1: np.asarray(np.linalg.solve(S, F), dtype=complex)})]
@@ -140,7 +140,7 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
     """
     spread = np.linspace(search.lo, search.hi, _SEED_FREQUENCIES)
     e = spring_polynomial(search.problem)
-    if e is None or e.size != 2 or e[0] != 0:
+    if e is None or e.size != 2 or e[0] != 0 or not search.problem.odd:
         return np.linspace(search.lo, search.hi, 3 * _SEED_FREQUENCIES), np.empty(0), np.empty(0)
     grid = np.linspace(search.lo, search.hi, _GRID)
     counts, excess = np.empty(_GRID, np.int64), np.empty(_GRID)

@@ -290,12 +290,18 @@ def map_multipliers(pb, va, H, odd, W, u, out):
     m = 2 * va.K.shape[0]
     Phi = np.empty((m, m))
     monodromy(pb, va, H, odd, W, u, Phi)
+    trace = 0.0
     for i in range(m):
+        trace += Phi[i, i]
         for j in range(m):
-            Phi[i, j] = (-Phi[i, j] if odd else Phi[i, j]) - (1.0 if i == j else 0.0)
+            if odd:
+                Phi[i, j] = -Phi[i, j]
+    shift = math.copysign(1.0, -trace if odd else trace)  # where multipliers gather, far above all natural frequencies
+    for i in range(m):
+        Phi[i, i] -= shift
     shifted_eigenvalues(Phi, out)
     for i in range(m):
-        out[i] += 1.0
+        out[i] += shift
     _sort_by_modulus(out)
     if np.any(va.flexibility != 0.0):
         refine_exponents(pb, H, odd, W, u, out, 2)

@@ -81,7 +81,8 @@ def spring_polynomial(pb: Problem) -> Floats | None:
     e = np.zeros((count + 1) // 2)
     for k in range(1, count + 1, 2):
         e[(k - 1) // 2] = c[k - 1] * math.comb(k, (k - 1) // 2) / 2 ** (k - 1)
-    return e * pb.directions[0, 0] ** 2 ** np.arange(1, e.size + 1)
+    e *= pb.directions[0, 0] ** 2 ** np.arange(1, e.size + 1)
+    return e[: max(1, int(np.max(np.nonzero(e)[0], initial=0)) + 1)]
 
 
 def amplitude_roots(S: complex, F: complex, e: Floats) -> Floats:
@@ -105,7 +106,25 @@ def single_element_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
         Z = F[0] / (S[0, 0] + np.polynomial.polynomial.polyval(N, e))
         seeds.append(Seed(W, {1: np.array([Z])}))
         seeds += [Seed(W, {1: np.array([Z]), 3: np.array([Z3])}) for Z3 in _third_harmonics(S3[0, 0], Z, e)]
-    return seeds
+    return seeds if pb.odd else [other for seed in seeds for other in _with_means(pb, seed)]
+
+
+def _with_means(pb: Problem, seed: Seed) -> list[Seed]:
+    """The seed beside every mean displacement that balances the mean force of an element that is not odd.
+
+    The mean of (m + a cos)^k is the sum over j of binom(k, 2j) binom(2j, j) m^(k - 2j) (a/2)^(2j).
+    """
+    d = pb.directions[0, 0]
+    a = abs(d * seed.harmonics[1][0])
+    start, count = pb.codes[0, 1], pb.codes[0, 2]
+    mean = np.zeros(count + 1)
+    mean[1] = stiffness_at(pb, 0, seed.frequency)[0][0, 0].real / d**2
+    for k, c in enumerate(pb.table[start + 1 : start + 1 + count][::-1], start=1):
+        for j in range(k // 2 + 1):
+            mean[k - 2 * j] += c * math.comb(k, 2 * j) * math.comb(2 * j, j) * (a / 2) ** (2 * j)
+    roots = np.polynomial.Polynomial(mean).trim().roots()
+    real = roots[np.abs(roots.imag) < 1e-9 * (np.abs(roots) + a)].real
+    return [Seed(seed.frequency, {0: np.array([m / d + 0j]), **seed.harmonics}) for m in real] or [seed]
 
 
 def almost_seeds(pb: Problem, W: float, k: float) -> list[Seed]:
