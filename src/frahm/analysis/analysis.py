@@ -14,6 +14,7 @@ import numpy as np
 from frahm import __version__
 from frahm.analysis.cross_check import cross_check
 from frahm.analysis.linear import without_absorber
+from frahm.analysis.long_term import attractors, worst
 from frahm.analysis.manifold import manifold
 from frahm.analysis.margin import detached_curve_margin
 from frahm.analysis.motions import SAMPLES_PER_PERIOD, motions
@@ -49,6 +50,8 @@ STEPS = (
     Step("slow manifold", manifold),
     Step("motions of the exact equations", motions),
     Step("slow flow against harmonic balance against integration", cross_check),
+    Step("attractors at the design wind", attractors),
+    Step("worst case over the window", worst),
     Step("largest motion", largest_motion),
 )
 

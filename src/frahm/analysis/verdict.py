@@ -13,7 +13,7 @@ from frahm.analysis.section import Section, Work
 
 def largest_motion(work: Work) -> Section:
     """The largest pipe displacement among the stable responses and the integrated motions."""
-    candidates = [*_from_motions(work), *_from_response(work)]
+    candidates = [*_from_motions(work), *_from_response(work), *_from_worst_case(work)]
     if not candidates:
         return Section()
     largest = max(candidates, key=lambda candidate: candidate["pipe_peak"])
@@ -45,6 +45,15 @@ def _from_motions(work: Work) -> list[dict[str, Any]]:
         for motion in work.done.results.get("motions", [])
         if math.isfinite(motion["pipe_peak"])
     ]
+
+
+def _from_worst_case(work: Work) -> list[dict[str, Any]]:
+    found = work.done.results.get("worst_case")
+    if found is None or not math.isfinite(found["pipe_peak"]):
+        return []
+    kind = "modulated" if found["kind"] == "quasi-periodic" else found["kind"]
+    row = {"pipe_peak": found["pipe_peak"], "relative_peak": found["relative_peak"], "detuning": found["detuning"]}
+    return [{**row, "kind": kind, "source": "search for attractors"}]
 
 
 def _from_response(work: Work) -> list[dict[str, Any]]:

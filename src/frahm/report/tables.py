@@ -122,6 +122,37 @@ def motion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     return rows
 
 
+def attractor_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Kind, peaks, envelope, basin fraction with its interval, and whether the motion from rest ends there."""
+    rows: list[tuple[str, ...]] = []
+    for found in analysis.results.get("attractors", []):
+        multiple = found["period_multiple"]
+        kind = f"{found['kind']}, {multiple} periods" if multiple > 1 else found["kind"]
+        low, high = found["basin_interval"]
+        rows.append(
+            (
+                kind, number(found["pipe_peak"]), number(found["pipe_envelope"][0]), number(found["relative_peak"]),
+                f"{100 * found['basin_fraction']:.3g} %", f"{100 * low:.3g} ... {100 * high:.3g} %",
+                "yes" if found["from_rest"] else "no",
+            )
+        )  # fmt: skip
+    return rows
+
+
+def worst_sentence(analysis: Analysis) -> str:
+    """Where the worst attractor over the window is, as a sentence; empty if it was not searched."""
+    worst = analysis.results.get("worst_case")
+    if worst is None:
+        return ""
+    return (
+        f"Over the window of the detuning the largest pipe peak of an attractor that at least"
+        f" {100 * worst['min_basin']:.3g} % of the sampled states reach is {number(worst['pipe_peak'])} m"
+        f" ({worst['kind']}, at {number(worst['detuning'])} rad/s), and the largest stroke"
+        f" {number(worst['relative_peak'])} m, from {worst['frequencies_searched']} frequencies searched;"
+        f" {'verified' if worst['verified'] else 'unverified'}."
+    )
+
+
 def comparison_head(analysis: Analysis) -> list[str]:
     """Column heads of `comparison_rows`."""
     return ["σ [rad/s]", *(head for head, _, _ in _comparisons(analysis))]
