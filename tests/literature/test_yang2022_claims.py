@@ -48,6 +48,23 @@ COMPUTED = [
 BESIDE = [
     (2, "pipe, exact equations from rest", 0.0497, 5e-5),
     (2, "relative, exact equations from rest", 0.0566, 5e-5),
+    # collocation (AUTO-07p) of the exact equations
+    (3, "unstable from, exact equations by harmonic balance", 0.01149, 6e-6),
+    (3, "unstable to, exact equations by harmonic balance", 0.04013, 6e-6),
+    (5, "several responses from, exact equations by harmonic balance", -0.16923, 6e-6),
+    (5, "several responses to, exact equations by harmonic balance", -0.09507, 6e-6),
+    (6, "unstable from, exact equations by harmonic balance", -0.01347, 6e-6),
+    (6, "unstable to, exact equations by harmonic balance", 0.13107, 6e-6),
+    (7, "saddle-node, exact equations by harmonic balance", 0.05115, 6e-6),
+    # shooting of the exact equations on a grid
+    (12, "several responses from, exact equations by harmonic balance", -0.353, 3e-3),
+    (12, "several responses to, exact equations by harmonic balance", -0.086, 3e-3),
+    (13, "special points from, exact equations by harmonic balance", 0.0525, 5e-4),
+    (13, "special points to, exact equations by harmonic balance", 0.28, 3e-3),
+    (14, "unstable from, exact equations by harmonic balance", -0.0115, 6e-4),
+    (14, "unstable to, exact equations by harmonic balance", 0.087, 1e-3),
+    (14, "largest periodic response of the pipe, exact equations", 0.0164, 5e-5),
+    # closed form, integration
     (3, "modulated from, exact equations from rest", -0.002, 2e-3),
     (3, "modulated to, exact equations from rest", 0.028, 2e-3),
     (4, "peak ratio, exact equations from rest", 1.575, 0.01),
@@ -117,6 +134,13 @@ def test_both_values_stand_beside_each_other_where_they_differ(reproduction):
 
 def test_exchanged_amplitudes_are_named(reproduction):
     assert "exchanged: pipe 0.0493 m, relative 0.0557 m" in reproduction.claims["2"]["explanation"]
+
+
+def test_exact_peak_on_the_detached_branch_is_above_any_that_was_integrated(reproduction):
+    beside = {value["name"]: value["value"] for value in reproduction.claims["12"]["beside"]}
+    integrated = beside["pipe, exact equations on the grid of detunings"]
+    assert pytest.approx(integrated, abs=1e-4) == 0.0712
+    assert integrated < beside["pipe, exact equations by harmonic balance"] < 1.02 * integrated
 
 
 def test_exceptions_are_said_even_where_a_claim_holds(reproduction):

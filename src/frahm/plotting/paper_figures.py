@@ -44,7 +44,12 @@ class Motions:
 
 
 def response_figure(
-    paper: ResponseCurve, averaged: ResponseCurve, motions: Motions, window: tuple[float, float], title: str
+    paper: ResponseCurve,
+    averaged: ResponseCurve,
+    exact: ResponseCurve,
+    motions: Motions,
+    window: tuple[float, float],
+    title: str,
 ) -> Figure:
     """Amplitudes of pipe and sink over detuning (Figs. 5, 6, 7, 10, 11).
 
@@ -52,6 +57,8 @@ def response_figure(
     ----------
     paper, averaged : ResponseCurve
         Both forms of the slow flow.
+    exact : ResponseCurve
+        Harmonic balance of the exact equations.
     motions : Motions
         Settled exact motions.
     window : tuple of float
@@ -65,6 +72,7 @@ def response_figure(
             _draw_halo(panel, averaged, quantity)
             _draw_motions(panel, motions, quantity)
             _draw_curve(panel, paper, quantity, color=BLUE, linewidth=1.8, zorder=3)
+            _draw_curve(panel, exact, quantity, **_EXACT_LOOK)
             _mark_special_points(panel, paper, quantity)
             panel.set(xlim=window, xlabel=DETUNING_LABEL, ylabel=label)
             panel.set_ylim(bottom=0)
@@ -103,6 +111,7 @@ _MODULATED_LOOK: dict[str, Any] = {
     "markerfacecolor": "none",
     "markeredgecolor": PURPLE,
 }
+_EXACT_LOOK: dict[str, Any] = {"color": INK, "linewidth": 0.7, "zorder": 3.5}
 _HOPF_LOOK: dict[str, Any] = {"marker": "s", "markersize": 5.6, "color": INK}
 _FOLD_LOOK: dict[str, Any] = {
     "marker": "D",
@@ -129,6 +138,7 @@ def _response_handles(paper: ResponseCurve, averaged: ResponseCurve, motions: Mo
     if not np.all(paper.stable):
         handles.append(_line("unstable", color=BLUE, linestyle=UNSTABLE_DASHES))
     handles.append(_line("slow flow with the exact frequency", **_HALO_LOOK))
+    handles.append(_line("exact, harmonic balance: largest value", **_EXACT_LOOK))
     handles += [_point(name, look) for kind, name, look in _MARKED if kind in kinds]
     if not np.all(motions.modulated):
         handles.append(_point("exact, periodic: largest value", _PERIODIC_LOOK))

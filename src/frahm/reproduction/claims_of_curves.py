@@ -22,6 +22,7 @@ from frahm.reproduction.judging import Beside, Evidence
 _SLOW = "slow flow in the paper's form, every branch in closed form, special points located"
 _AVERAGED = "slow flow with the exact frequency"
 _EXACT = "exact equations"
+_BALANCE = "exact equations by harmonic balance"
 
 
 def _shedding(claim: Claim, computed: Computations) -> Evidence:
@@ -53,12 +54,13 @@ def _middle_unstable(claim: Claim, computed: Computations) -> Evidence:
     low, high = unstable_range(computed.curve(sink))
     rest_low, _ = computed.from_rest(sink).modulated_range
     remark = _motion_remark(claim, computed)
-    if rest_low < low:
-        remark += f" Between {rest_low:.3f} and {low:.4f} rad/s a stable periodic response exists beside it."
+    exact_low, _ = unstable_range(computed.exact_curve(sink))
+    if rest_low < exact_low:
+        remark += f" Between {rest_low:.3f} and {exact_low:.4f} rad/s a stable periodic response exists beside it."
     return Evidence(
         _SLOW,
         {"unstable from": low, "unstable to": high},
-        beside=(*_averaged_range(computed, sink), *_modulated_range(computed, sink)),
+        beside=_ranges_beside(computed, sink),
         remark=remark,
     )
 
@@ -87,7 +89,8 @@ def _left_range(claim: Claim, computed: Computations) -> Evidence:
     return Evidence(
         _SLOW,
         {"several responses from": low, "several responses to": high},
-        beside=_range_beside("several responses", several_responses(computed.curve(sink, "averaged"), "left")),
+        beside=_several_beside(computed, sink),
+        remark=_exactly("several responses exist", several_responses(computed.exact_curve(sink), "left")),
     )
 
 
@@ -97,7 +100,7 @@ def _stiff_unstable(claim: Claim, computed: Computations) -> Evidence:
     return Evidence(
         _SLOW,
         {"unstable from": low, "unstable to": high},
-        beside=(*_averaged_range(computed, sink), *_modulated_range(computed, sink)),
+        beside=_ranges_beside(computed, sink),
         remark=_motion_remark(claim, computed),
     )
 
@@ -125,6 +128,9 @@ def _right_saddle_node(claim: Claim, computed: Computations) -> Evidence:
                 detunings(computed.curve(sink, "averaged"), "right", "saddle-node")[0],
                 "rad/s",
             ),
+            Beside(
+                f"saddle-node, {_BALANCE}", detunings(computed.exact_curve(sink), "right", "saddle-node")[0], "rad/s"
+            ),
             Beside(f"{_EXACT} from rest modulated up to", rest_high, "rad/s"),
         ),
         remark=f"From rest the exact motion stays modulated up to {rest_high:.3f} rad/s.",
@@ -139,7 +145,8 @@ def _less_damped_left(claim: Claim, computed: Computations) -> Evidence:
         _SLOW,
         {"several responses from": low, "several responses to": high, "pipe": largest, "detuning of the peak": sigma},
         beside=(
-            *_range_beside("several responses", several_responses(computed.curve(sink, "averaged"), "left")),
+            *_several_beside(computed, sink),
+            Beside(f"pipe, {_BALANCE}", computed.exact_curve(sink).largest()[0], "m"),
             Beside(f"pipe, {_EXACT} on the grid of detunings", computed.on_branches(sink).largest_pipe(), "m"),
         ),
     )
@@ -148,11 +155,14 @@ def _less_damped_left(claim: Claim, computed: Computations) -> Evidence:
 def _less_damped_right(claim: Claim, computed: Computations) -> Evidence:
     (sink,) = claim.sinks
     found = detunings(computed.curve(sink), "right")
-    exact = detunings(computed.curve(sink, "averaged"), "right")
+    averaged, exact = (detunings(c, "right") for c in (computed.curve(sink, "averaged"), computed.exact_curve(sink)))
     return Evidence(
         _SLOW,
         {"special points from": found[0], "special points to": found[-1]},
-        beside=_range_beside("special points", (exact[0], exact[-1])),
+        beside=(
+            *_range_beside("special points", (averaged[0], averaged[-1])),
+            *_range_beside("special points", (exact[0], exact[-1]), _BALANCE),
+        ),
     )
 
 
@@ -202,8 +212,30 @@ def _range_beside(name: str, bounds: tuple[float, float], method: str = _AVERAGE
     return tuple(Beside(f"{name} {end}, {method}", value, "rad/s") for end, value in ends)
 
 
-def _averaged_range(computed: Computations, sink: Sink) -> tuple[Beside, ...]:
-    return _range_beside("unstable", unstable_range(computed.curve(sink, "averaged")))
+def _several_beside(computed: Computations, sink: Sink) -> tuple[Beside, ...]:
+    """Range left of resonance with several responses, by the averaged form and exactly."""
+    return (
+        *_range_beside("several responses", several_responses(computed.curve(sink, "averaged"), "left")),
+        *_range_beside("several responses", several_responses(computed.exact_curve(sink), "left"), _BALANCE),
+    )
+
+
+def _ranges_beside(computed: Computations, sink: Sink) -> tuple[Beside, ...]:
+    """Range with unstable responses by the averaged form and exactly, and the range with modulated motion."""
+    return (
+        *_range_beside("unstable", unstable_range(computed.curve(sink, "averaged"))),
+        *unstable_range_beside(computed, sink),
+        *_modulated_range(computed, sink),
+    )
+
+
+def unstable_range_beside(computed: Computations, sink: Sink) -> tuple[Beside, ...]:
+    """Range with unstable responses of the exact equations: between Neimark-Sacker points and saddle-nodes."""
+    return _range_beside("unstable", unstable_range(computed.exact_curve(sink)), _BALANCE)
+
+
+def _exactly(what: str, bounds: tuple[float, float]) -> str:
+    return f"Exactly {what} from {bounds[0]:.4f} to {bounds[1]:.4f} rad/s."
 
 
 def _modulated_range(computed: Computations, sink: Sink) -> tuple[Beside, ...]:

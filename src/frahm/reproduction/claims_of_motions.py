@@ -8,6 +8,7 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.published.yang2022 import Claim, Sink
+from frahm.reproduction.claims_of_curves import unstable_range_beside
 from frahm.reproduction.computations import Computations, State
 from frahm.reproduction.curve_facts import detunings, falling, peak, unstable_range
 from frahm.reproduction.judging import Beside, Evidence
@@ -87,7 +88,13 @@ def _more_damped(claim: Claim, computed: Computations) -> Evidence:
         f"{_SLOW} for the ranges; {_EXACT}, from rest and from every stable equilibrium, for the pipe",
         {"unstable from": low, "unstable to": high, "pipe, at most": motion},
         {"no saddle-node left of resonance": not left},
-        (Beside(f"largest pipe amplitude, {_SLOW}", peak(curve)[0], "m"),),
+        (
+            Beside(f"largest pipe amplitude, {_SLOW}", peak(curve)[0], "m"),
+            *unstable_range_beside(computed, sink),
+            Beside(
+                "largest periodic response of the pipe, exact equations", computed.exact_curve(sink).largest()[0], "m"
+            ),
+        ),
     )
 
 

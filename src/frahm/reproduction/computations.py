@@ -44,6 +44,10 @@ class Computations:
         """Every branch of the slow flow over the detuning."""
         return self._once(("curve", sink, form), functools.partial(_curve, sink, form), _curve_doubts)
 
+    def exact_curve(self, sink: Sink) -> ResponseCurve:
+        """Every periodic response of the exact equations over the detuning, by harmonic balance."""
+        return self._once(("exact", sink), lambda: frequency_response(case_of(sink), detuning=WINDOW), _curve_doubts)
+
     def from_rest(self, sink: Sink) -> SettledMotions:
         """Exact motions from rest over the detuning."""
         return self._once(("rest", sink), functools.partial(motions_from_rest, sink), _motion_doubts)

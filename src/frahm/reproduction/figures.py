@@ -89,7 +89,8 @@ def _response(computed: Computations, sink: Sink, window: tuple[float, float]) -
 
     title = rf"$\kappa$ = {sink.kappa:g} 1/(m$^2$ s$^2$), $\xi_2$ = {sink.xi2:g} 1/s"
     motions = _thinned(computed.from_rest(sink), computed.on_branches(sink))
-    return response_figure(computed.curve(sink), computed.curve(sink, "averaged"), motions, window, title)
+    curves = (computed.curve(sink), computed.curve(sink, "averaged"), computed.exact_curve(sink))
+    return response_figure(*curves, motions, window, title)
 
 
 def _comparison(computed: Computations) -> Figure:
