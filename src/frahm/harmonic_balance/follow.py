@@ -86,7 +86,7 @@ def follow(pb, odd, y0, H0, H_most, goal, direction, lo, hi, x_scale, w_scale, l
         ds = min(longest, ds * min(2.0, max(0.5, _ANGLE / max(angle, 1e-3))))
         if y[n] < lo or y[n] > hi:
             return count, LEFT
-        quiet = quiet + 1 if truncation < 1e-3 * goal else 0
+        quiet = quiet + 1 if truncation < 1e-3 * goal and goal < math.inf else 0  # a given number is kept
         if quiet > 3 and H - 2 * step >= 3:  # more harmonics than needed
             _more(pb, H, H - 2 * step, odd, count - 1, ys, ts, n)
             _more(pb, H, H - 2 * step, odd, count - 2, ys, ts, n)
