@@ -12,7 +12,7 @@ def test_the_python_of_the_readme_works(capsys):
     exec(compile(code, "README.md", "exec"), {})
     said = capsys.readouterr().out
     assert said.count("saddle-node") == 4
-    assert said.count("hopf") == 2
+    assert said.count("neimark-sacker") == 2
     assert "detached branches: [1]" in said
     assert 0.0169 < float(re.search(r"resonance: ([\d.]+) m", said)[1]) < 0.0172  # .0170 by another integrator
 

@@ -10,12 +10,14 @@ import numpy as np
 
 from frahm.analysis.section import Section, Work
 from frahm.harmonic_balance import is_linear
-from frahm.response import DetachedCurveEvent, detached_curve_events
+from frahm.response import DetachedCurveEvent, detached_curve_events, frequency_response
+from frahm.systems import with_parameters
 
 UPWARD, DOWNWARD = (1.0, 1.6, 3.0), (1.0, 0.5, 0.2)  # factors on the force: the search ends with the first find
 _SLICES = 4
 _MOST_SADDLE_NODES = 16
 _MOST_SECONDS = 30.0
+_BESIDE = 0.002  # of the force: where a merge is looked at from both sides
 
 
 def detached_curve_margin(work: Work) -> Section:
@@ -64,13 +66,29 @@ def _searched(work: Work, edges: tuple[float, ...], end: float) -> tuple[list[De
 def _described(work: Work, event: DetachedCurveEvent) -> dict[str, Any]:
     return {
         "kind": event.kind,
-        "appears_upward": event.direction > 0,
+        "change": _change(work, event),
         "force": event.value,
         "frequency": event.frequency,
         "detuning": event.frequency - work.system.reference_frequency,
         "pipe_peak": event.pipe_peak,
         "relative_peak": event.relative_peak,
     }
+
+
+def _change(work: Work, event: DetachedCurveEvent) -> str:
+    """What becomes of detached curves as the force grows past the event: "appears", "vanishes", "joins" or "parts".
+
+    A birth tells it by the side on which its pair of saddle-nodes exists. At a merge the curves on both sides tell it.
+    """
+    if event.kind == "birth":
+        return "appears" if event.direction > 0 else "vanishes"
+    before, after = (_detached_count(work, event.value * factor) for factor in (1 - _BESIDE, 1 + _BESIDE))
+    return "parts" if after > before else "joins"
+
+
+def _detached_count(work: Work, force: float) -> int:
+    curve = frequency_response(with_parameters(work.system, force=force), detuning=work.case.analysis.detuning)
+    return sum(branch.detached and not branch.asymmetric for branch in curve.branches)
 
 
 def margin_sentence(margin: dict[str, Any] | None) -> str:
@@ -94,9 +112,8 @@ def margin_sentence(margin: dict[str, Any] | None) -> str:
 
 
 def _event(event: dict[str, Any]) -> str:
-    if event["kind"] == "birth":
-        return f"a detached response curve {'appears' if event['appears_upward'] else 'vanishes'}"
-    return f"a detached response curve {'splits off' if event['appears_upward'] else 'merges with another one'}"
+    words = {"joins": "merges with another one", "parts": "splits off"}
+    return f"a detached response curve {words.get(event['change'], event['change'])}"
 
 
 def _increase(force: float) -> str:

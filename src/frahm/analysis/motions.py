@@ -76,8 +76,7 @@ def motions(work: Work) -> Section:
         checks=(_finished(found), *_expected(work, found)),
         unverified=doubts,
         notes=(
-            "Motions were integrated from rest only: another start can lead to another motion. "
-            "Which motions last, and from which starts, is not searched here.",
+            "These motions were integrated from rest: another start can lead to another motion.",
             *_left_out(points[_MOST_POINTS:]),
         ),
     )
