@@ -98,7 +98,7 @@ class Work:
 
 
 def merged(first: Section, second: Section) -> Section:
-    """Both sections in one; mappings inside `results` are joined, never replaced."""
+    """Both sections in one; mappings inside `results` are joined, never replaced, and no doubt is told twice."""
     results = dict(first.results)
     for name, value in second.results.items():
         old = results.get(name)
@@ -107,6 +107,6 @@ def merged(first: Section, second: Section) -> Section:
         results=results,
         data={**first.data, **second.data},
         checks=first.checks + second.checks,
-        unverified=first.unverified + second.unverified,
+        unverified=tuple(dict.fromkeys(first.unverified + second.unverified)),
         notes=first.notes + second.notes,
     )
