@@ -9,9 +9,13 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError, field_validator, model_validator
 
+from frahm.case.absorber import Absorber
+from frahm.case.analysis import Analysis
+from frahm.case.pipe import Pipe
 from frahm.case.problems import parameter_error
 from frahm.case.quantities import Label, refusal
-from frahm.case.sections import Absorber, Analysis, Pipe, Section, Wind
+from frahm.case.section import Section
+from frahm.case.wind import Wind
 from frahm.errors import ParameterError, check_count, check_number, nearest
 
 
