@@ -59,6 +59,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         loader=jinja2.PackageLoader("frahm.report", "."),
         autoescape=True,
         trim_blocks=True,
+        keep_trailing_newline=True,
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
