@@ -59,6 +59,11 @@ class Case(Section):
         if lowest <= -omega:
             allowed = f"more than -{omega:g} rad/s, where the excitation frequency is zero"
             raise refusal(allowed, path="analysis.detuning[0]", value=lowest)
+        speed = self.wind.speed
+        for field, (low, high) in self.wind.speed_ranges(self.pipe.diameter).items():
+            if not low * (1 - 1e-12) <= speed <= high * (1 + 1e-12):
+                allowed = f"{low:g} ... {high:g} m/s, the Reynolds numbers that wind.{field} is given for"
+                raise refusal(allowed, path="wind.speed", value=speed)
         names = [absorber.name for absorber in self.absorbers]
         for index, name in enumerate(names):
             if name in names[:index]:

@@ -41,6 +41,8 @@ def _section_rows(section: BaseModel, path: str, key: str) -> Iterator[tuple[str
 
 
 def _text(value: Any, unit: str) -> str:
+    if isinstance(value, tuple) and value and isinstance(value[0], tuple):
+        return "[" + ", ".join(_text(entry, unit) for entry in value) + "]"
     if isinstance(value, tuple):
         return "[" + ", ".join(f"{number:.6g}" for number in value) + "]" + (f" {unit}" if unit else "")
     if isinstance(value, float):

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from frahm.case import Case
-from frahm.errors import check_number
+from frahm.errors import ParameterError, check_number
+from frahm.loads.reynolds import EDGE, lift_curve, strouhal_curve
 
 AIR_VISCOSITY = 1.5e-5  # kinematic viscosity of air near 20 degrees Celsius [m^2/s]
 
@@ -103,6 +104,10 @@ class VortexShedding:
         U / (f D) [-].
     reynolds_number : float
         U D / nu [-].
+    speed : float
+        Wind speed U [m/s].
+    strouhal, lift_coefficient : float
+        St and C_L at this Reynolds number [-].
     """
 
     frequency: float
@@ -110,6 +115,9 @@ class VortexShedding:
     lift: float
     reduced_velocity: float
     reynolds_number: float
+    speed: float
+    strouhal: float
+    lift_coefficient: float
 
     @property
     def frequency_hz(self) -> float:
@@ -117,14 +125,43 @@ class VortexShedding:
         return self.frequency / (2 * math.pi)
 
 
-def vortex_shedding(case: Case) -> VortexShedding:
-    """Frequency, lift and similarity numbers of a case."""
+def vortex_shedding(case: Case, speed: float | None = None) -> VortexShedding:
+    """Frequency, lift and similarity numbers of a case.
+
+    Parameters
+    ----------
+    case : Case
+    speed : float, optional
+        Wind speed [m/s]; that of the case by default.
+
+    Raises
+    ------
+    ParameterError
+        If the Strouhal number or the lift coefficient is not given at this speed: they are never extrapolated.
+    """
     wind, pipe = case.wind, case.pipe
-    frequency = shedding_frequency(wind.speed, pipe.diameter, wind.strouhal)
+    U = wind.speed if speed is None else check_number("speed", speed, above=0, unit="m/s")
+    check_speeds(case, "speed", U, U)
+    Re = reynolds_number(U, pipe.diameter, wind.viscosity)
+    St, CL = float(strouhal_curve(wind).value(Re)), float(lift_curve(wind).value(Re))
+    frequency = shedding_frequency(U, pipe.diameter, St)
     return VortexShedding(
         frequency=frequency,
         detuning=frequency - pipe.frequency,
-        lift=lift_amplitude(wind.speed, pipe.diameter, wind.lift_coefficient, wind.air_density, pipe.length),
-        reduced_velocity=reduced_velocity(wind.speed, pipe.frequency, pipe.diameter),
-        reynolds_number=reynolds_number(wind.speed, pipe.diameter),
+        lift=lift_amplitude(U, pipe.diameter, CL, wind.air_density, pipe.length),
+        reduced_velocity=reduced_velocity(U, pipe.frequency, pipe.diameter),
+        reynolds_number=Re,
+        speed=U,
+        strouhal=St,
+        lift_coefficient=CL,
     )
+
+
+def check_speeds(case: Case, name: str, low: float, high: float) -> None:
+    """Refuse wind speeds [m/s] for which the Strouhal number or the lift coefficient of a case is not given."""
+    for field, (lowest, highest) in case.wind.speed_ranges(case.pipe.diameter).items():
+        if low < lowest * (1 - EDGE) or high > highest * (1 + EDGE):
+            raise ParameterError(
+                name, low if low == high else (low, high), f"speeds within {lowest:g} ... {highest:g} m/s",
+                hint=f"Beyond them wind.{field} is not given, and it is not extrapolated.",
+            )  # fmt: skip

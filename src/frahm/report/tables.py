@@ -234,6 +234,8 @@ def _unit(unit: str) -> str:
 
 
 def _value(value: Any) -> str:
+    if isinstance(value, tuple) and value and isinstance(value[0], tuple):
+        return "; ".join(" → ".join(number(entry) for entry in pair) for pair in value)
     if isinstance(value, tuple):
         return " … ".join(number(float(entry), 6) for entry in value) if len(value) == 2 else str(list(value))
     return number(value, 6)
