@@ -29,6 +29,9 @@ _FAMILIAR = {
     "N/m^3": ("N/m^3", "kN/m^3", "N/mm^3"),
     "N s/m": ("N s/m", "kN s/m", "N s/mm"),
     "kg/m^3": ("kg/m^3", "g/cm^3"),
+    "s": ("year", "day", "h", "s"),
+    "rad": ("deg", "rad"),
+    "Pa/m": ("MPa/m", "GPa/m", "Pa/m"),
     "": ("%",),
 }
 

@@ -22,7 +22,7 @@ from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import PERIODIC_BELOW
 from frahm.analysis.verdict import largest_motion, verdict
-from frahm.case import Case, load_case
+from frahm.case import Case, field_values, load_case
 from frahm.harmonic_balance.branches import GOAL
 from frahm.time_integration.batch import TOLERANCE
 
@@ -189,13 +189,7 @@ def _provenance(case: Case) -> dict[str, Any]:
 
 def defaulted_fields(case: Case) -> list[str]:
     """Paths of the fields that were left out and took their default."""
-    paths = [] if "absorbers" in case.model_fields_set else ["absorbers"]
-    sections = [(name, getattr(case, name)) for name in ("pipe", "wind", "analysis")]
-    for i, absorber in enumerate(case.absorbers):
-        sections += [(f"absorbers[{i}]", absorber), (f"absorbers[{i}].law", absorber.law)]
-    for path, section in sections:
-        paths += [f"{path}.{name}" for name in type(section).model_fields if name not in section.model_fields_set]
-    return paths
+    return [field.path for field in field_values(case) if not field.given and field.path not in ("name", "title")]
 
 
 def plain(value: Any) -> Any:

@@ -1,28 +1,37 @@
-"""Room `case`: the input, as models of pipe, wind, absorbers and analysis; files in and out."""
+"""Room `case`: the input, as models of pipe, wind, absorbers, climate, fatigue and analysis; files in and out."""
 
 from frahm.case.absorber import Absorber, CubicLaw, LinearLaw, PolynomialLaw
 from frahm.case.analysis import Analysis
 from frahm.case.case import Case
-from frahm.case.fields import FieldFacts, field_table
+from frahm.case.climate import Climate, ClimateRow, Weibull
+from frahm.case.fatigue import SN_CURVE_NAMES, Fatigue
+from frahm.case.fields import FieldFacts, FieldValue, field_table, field_values
 from frahm.case.loading import builtin_names, builtin_text, load_case, template_text
 from frahm.case.pipe import Pipe
 from frahm.case.schema import case_schema
 from frahm.case.wind import Wind
 
 __all__ = [
+    "SN_CURVE_NAMES",
     "Absorber",
     "Analysis",
     "Case",
+    "Climate",
+    "ClimateRow",
     "CubicLaw",
+    "Fatigue",
     "FieldFacts",
+    "FieldValue",
     "LinearLaw",
     "Pipe",
     "PolynomialLaw",
+    "Weibull",
     "Wind",
     "builtin_names",
     "builtin_text",
     "case_schema",
     "field_table",
+    "field_values",
     "load_case",
     "template_text",
 ]

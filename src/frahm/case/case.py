@@ -11,6 +11,8 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 
 from frahm.case.absorber import Absorber
 from frahm.case.analysis import Analysis
+from frahm.case.climate import Climate
+from frahm.case.fatigue import Fatigue
 from frahm.case.pipe import Pipe
 from frahm.case.problems import parameter_error
 from frahm.case.quantities import Label, refusal
@@ -38,6 +40,12 @@ class Case(Section):
     wind: Wind = Field(title="Wind", description="The wind that sheds vortices from the pipe.")
     absorbers: tuple[Absorber, ...] = Field(
         default=(), title="Absorbers", description="Masses on the pipe; none is allowed."
+    )
+    climate: Climate | None = Field(
+        default=None, title="Wind climate", description="How often which wind blows, and for how long."
+    )
+    fatigue: Fatigue | None = Field(
+        default=None, title="Fatigue", description="The detail whose fatigue damage is counted."
     )
     analysis: Analysis = Field(default=Analysis(), title="Analysis", description="What is computed for the case.")
 
@@ -68,7 +76,17 @@ class Case(Section):
         for index, name in enumerate(names):
             if name in names[:index]:
                 raise refusal("a name no other absorber has", path=f"absorbers[{index}].name", value=name)
+        if self.fatigue is not None:
+            self._fatigue_complete(self.fatigue)
         return self
+
+    def _fatigue_complete(self, fatigue: Fatigue) -> None:
+        if self.climate is None:
+            hint = "Say how often which wind blows: climate: {duration: 20 year, weibull: {scale: ..., shape: ...}}."
+            raise refusal("a case with the section climate", hint=hint, path="fatigue", value="a case without climate")
+        if fatigue.stress_per_displacement is None:
+            allowed = "a number [Pa/m], or text with a unit such as MPa/m, because the pipe is given as one mode"
+            raise refusal(allowed, path="fatigue.stress_per_displacement", value=None)
 
     def with_pipe(self, /, **changes: Any) -> Case:
         """Case with other values of the pipe, such as ``frequency="0.8 Hz"``; what is not named stays."""
@@ -77,6 +95,14 @@ class Case(Section):
     def with_wind(self, /, **changes: Any) -> Case:
         """Case with other values of the wind, such as ``speed=2.7`` [m/s]; what is not named stays."""
         return self._with_section("wind", changes)
+
+    def with_climate(self, /, **changes: Any) -> Case:
+        """Case with other values of the wind climate, such as ``duration="25 year"``; what is not named stays."""
+        return self._with_section("climate", changes)
+
+    def with_fatigue(self, /, **changes: Any) -> Case:
+        """Case with other values of the fatigue detail, such as ``curve="E"``; what is not named stays."""
+        return self._with_section("fatigue", changes)
 
     def with_analysis(self, /, **changes: Any) -> Case:
         """Case with other settings of the analysis, such as ``seed=2``; what is not named stays."""
@@ -169,7 +195,8 @@ class Case(Section):
 
     def _with_section(self, section: str, changes: dict[str, Any]) -> Case:
         old = getattr(self, section)
-        return self._with({section: {name: getattr(old, name) for name in old.model_fields_set} | changes})
+        kept = {} if old is None else {name: getattr(old, name) for name in old.model_fields_set}
+        return self._with({section: kept | changes})
 
     def _position(self, name: str | None, index: int | None) -> int:
         names = [absorber.name for absorber in self.absorbers]

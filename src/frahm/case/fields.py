@@ -6,12 +6,14 @@ import functools
 import types
 import typing
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from frahm.case.quantities import Door
+
+_LISTED = 9  # sections in a list that are still named one by one
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,35 @@ def children(model: type[BaseModel], path: str) -> list[str]:
     return [name for name in below if not set(name) & set(".[(")]
 
 
+class FieldValue(NamedTuple):
+    """What a case says in one field: where, what is known about the field, the value, and whether it was given."""
+
+    path: str
+    facts: FieldFacts
+    value: Any
+    given: bool
+
+
+def field_values(case: BaseModel) -> typing.Iterator[FieldValue]:
+    """Every field of a case with its value, section by section; sections left out are left out, long lists are one."""
+    return _values(case, "", "", field_table(type(case)))
+
+
+def _values(
+    section: BaseModel, path: str, key: str, table: typing.Mapping[str, FieldFacts]
+) -> typing.Iterator[FieldValue]:
+    for name, info in type(section).model_fields.items():
+        value, suffixes = getattr(section, name), {kind: suffix for suffix, kind in _sections(info.annotation)}
+        entries = value if isinstance(value, tuple) and suffixes and 0 < len(value) <= _LISTED else ()
+        if isinstance(value, BaseModel):
+            yield from _values(value, f"{path}{name}.", f"{key}{name}{suffixes[type(value)]}.", table)
+        elif entries:
+            for i, entry in enumerate(entries):
+                yield from _values(entry, f"{path}{name}[{i}].", f"{key}{name}{suffixes[type(entry)]}.", table)
+        elif value is not None or not suffixes:
+            yield FieldValue(path + name, table[key + name], value, name in section.model_fields_set)
+
+
 def _walk(model: type[BaseModel], prefix: str) -> typing.Iterator[FieldFacts]:
     for name, info in model.model_fields.items():
         path = prefix + name
@@ -72,6 +103,8 @@ def _sections(annotation: Any) -> typing.Iterator[tuple[str, type[BaseModel]]]:
         yield "", annotation
     elif typing.get_origin(annotation) is tuple and arguments[-1] is Ellipsis:
         yield from (("[]" + suffix, section) for suffix, section in _sections(arguments[0]))
+    elif typing.get_origin(annotation) in (typing.Union, types.UnionType) and type(None) in arguments:
+        yield from (found for kind in arguments for found in _sections(kind))
     elif typing.get_origin(annotation) in (typing.Union, types.UnionType):
         for kind in arguments:
             if isinstance(kind, type) and issubclass(kind, BaseModel):
@@ -96,8 +129,14 @@ def _facts(path: str, info: FieldInfo) -> FieldFacts:
 
 def _door(info: FieldInfo) -> Door | None:
     """How a value comes in; a pair of numbers comes in number by number."""
-    inside = [entry for argument in typing.get_args(info.annotation) for entry in typing.get_args(argument)]
-    return next((entry for entry in [*info.metadata, *inside] if isinstance(entry, Door)), None)
+    return next((entry for entry in [*info.metadata, *_inside(info.annotation)] if isinstance(entry, Door)), None)
+
+
+def _inside(annotation: Any) -> typing.Iterator[Any]:
+    """What the annotation is made of, at any depth."""
+    for argument in typing.get_args(annotation):
+        yield argument
+        yield from _inside(argument)
 
 
 def _allowed_without_door(info: FieldInfo) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from frahm.case.case import Case
+from frahm.case.csv_text import files_beside
 from frahm.case.problems import parameter_error
 from frahm.case.toml_text import read_toml
 from frahm.case.yaml_text import TextError, read_yaml, yaml_text
@@ -95,7 +96,8 @@ def _from_file(source: str | os.PathLike[str]) -> Case:
         raise ParameterError("case", Path(source).name, "a case file", where=where, hint=_sentence(error)) from None
     if data is None or data == {}:
         raise ParameterError("case", "an empty file", "a file with at least pipe and wind", where=str(source))
-    return _from_data(data, str(source), lines)
+    with files_beside(Path(source)):
+        return _from_data(data, str(source), lines)
 
 
 def _sentence(error: TextError) -> str:
@@ -141,7 +143,7 @@ def _no_such_file(source: str) -> ParameterError:
 
 def _from_data(data: Any, source: str | None = None, lines: Mapping[str, int] | None = None) -> Case:
     if not isinstance(data, dict):
-        allowed = "a mapping with the sections pipe, wind, absorbers, analysis"
+        allowed = "a mapping with the sections pipe, wind, absorbers, climate, fatigue, analysis"
         raise ParameterError("case", data, allowed, where=source)
     odd = next((key for key in data if not isinstance(key, str)), None)
     if odd is not None:

@@ -8,8 +8,10 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from frahm.case import Case, field_table
+from frahm.case import Case, field_values
 from frahm.loads import vortex_shedding
+
+_HEADING = ("name", "title")
 
 
 def case_summary(case: Case) -> str:
@@ -22,26 +24,17 @@ def case_summary(case: Case) -> str:
 
 
 def _rows(case: Case) -> Iterator[tuple[str, str, bool]]:
-    for section in ("pipe", "wind"):
-        yield from _section_rows(getattr(case, section), section, section)
-    if not case.absorbers:
-        yield "absorbers", "none", "absorbers" not in case.model_fields_set
-    for i, absorber in enumerate(case.absorbers):
-        yield from _section_rows(absorber, f"absorbers[{i}]", "absorbers[]")
-        yield from _section_rows(absorber.law, f"absorbers[{i}].law", f"absorbers[].law({absorber.law.kind})")
-    yield from _section_rows(case.analysis, "analysis", "analysis")
-
-
-def _section_rows(section: BaseModel, path: str, key: str) -> Iterator[tuple[str, str, bool]]:
-    table = field_table(Case)
-    for name in type(section).model_fields:
-        value = getattr(section, name)
-        if not isinstance(value, BaseModel):
-            yield f"{path}.{name}", _text(value, table[f"{key}.{name}"].unit), name not in section.model_fields_set
+    for field in field_values(case):
+        if field.path not in _HEADING:
+            yield field.path, _text(field.value, field.facts.unit), not field.given
 
 
 def _text(value: Any, unit: str) -> str:
-    if isinstance(value, tuple) and value and isinstance(value[0], tuple):
+    if value is None or value == ():
+        return "none"
+    if isinstance(value, tuple) and isinstance(value[0], BaseModel):
+        return f"{len(value)} rows"
+    if isinstance(value, tuple) and isinstance(value[0], tuple):
         return "[" + ", ".join(_text(entry, unit) for entry in value) + "]"
     if isinstance(value, tuple):
         return "[" + ", ".join(f"{number:.6g}" for number in value) + "]" + (f" {unit}" if unit else "")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel
 
 from frahm.analysis import Analysis
-from frahm.case import Case, field_table
+from frahm.case import Case, field_values
 from frahm.loads import vortex_shedding
 
 _MARKS = {"pass": "✓ pass", "fail": "✗ fail", "unverified": "? unverified"}
@@ -40,7 +40,8 @@ def input_rows(case: Case, defaulted: list[str]) -> list[InputRow]:
     """Every field of the case in SI units, those left out in the file marked."""
     return [
         InputRow(path, facts.title, _symbol(facts.symbol), _value(value), _unit(facts.unit), path in defaulted)
-        for path, facts, value in _fields(case)
+        for path, facts, value, _ in field_values(case)
+        if path not in ("name", "title", "absorbers")
     ]
 
 
@@ -210,20 +211,6 @@ def manifold_rows(analysis: Analysis) -> list[tuple[str, str, str]]:
     return rows
 
 
-def _fields(case: Case) -> Iterator[tuple[str, Any, Any]]:
-    sections: list[tuple[str, str, BaseModel]] = [("pipe", "pipe", case.pipe), ("wind", "wind", case.wind)]
-    for i, absorber in enumerate(case.absorbers):
-        sections.append((f"absorbers[{i}]", "absorbers[]", absorber))
-        sections.append((f"absorbers[{i}].law", f"absorbers[].law({absorber.law.kind})", absorber.law))
-    sections.append(("analysis", "analysis", case.analysis))
-    table = field_table(Case)
-    for path, key, section in sections:
-        for name in type(section).model_fields:
-            value = getattr(section, name)
-            if not isinstance(value, BaseModel):
-                yield f"{path}.{name}", table[f"{key}.{name}"], value
-
-
 def _symbol(symbol: str) -> tuple[str, str]:
     letter, _, index = symbol.partition("_")
     return _GREEK.get(letter, letter), index
@@ -234,7 +221,9 @@ def _unit(unit: str) -> str:
 
 
 def _value(value: Any) -> str:
-    if isinstance(value, tuple) and value and isinstance(value[0], tuple):
+    if value == () or (isinstance(value, tuple) and isinstance(value[0], BaseModel)):
+        return f"{len(value)} rows"
+    if isinstance(value, tuple) and isinstance(value[0], tuple):
         return "; ".join(" → ".join(number(entry) for entry in pair) for pair in value)
     if isinstance(value, tuple):
         return " … ".join(number(float(entry), 6) for entry in value) if len(value) == 2 else str(list(value))

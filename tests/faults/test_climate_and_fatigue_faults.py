@@ -1,0 +1,112 @@
+import re
+
+import pytest
+from typer.testing import CliRunner
+
+import frahm
+from frahm.cli import app
+
+BASE = """pipe: {mass: 247, frequency: 0.78 Hz, damping_ratio: 0.0015, diameter: 762 mm}
+wind: {speed: 2.7, lift_coefficient: 0.4535, strouhal: 0.225}
+"""
+CLIMATE = "climate: {duration: 20 year, weibull: {scale: 7, shape: 2}}\n"
+FATIGUE = "fatigue: {curve: D, stress_per_displacement: 283.5 MPa/m}\n"
+
+
+def refusal_of(folder, text, table=None):
+    """The message of `frahm check`, which is the one `load_case` raises; exit code 2."""
+    path = folder / "case.yaml"
+    path.write_text(text, encoding="utf-8")
+    if table is not None:
+        (folder / "wind.csv").write_bytes(table if isinstance(table, bytes) else table.encode())
+    with pytest.raises(frahm.ParameterError) as caught:
+        frahm.load_case(path)
+    result = CliRunner().invoke(app, ["check", str(path)])
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr == f"frahm: {caught.value}\n"
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("sections", "says"),
+    [
+        (FATIGUE, r"case.yaml:3: fatigue: given 'a case without climate'; allowed: a case with the section climate"),
+        (CLIMATE + "fatigue: {stress_per_displacement: 1e8}\n", r"fatigue.curve: given nothing; .*\(required\)"),
+        (CLIMATE + "fatigue: {curve: D}\n", r"fatigue.stress_per_displacement: given None; .*MPa/m"),
+        (CLIMATE + FATIGUE.replace("curve: D", "curve: C3"), r"given 'C3'; allowed: one of B1, .*Did you mean 'C"),
+        (CLIMATE + FATIGUE.replace("curve: D", "curve: W"), r"given 'W'; allowed: one of B1, .*Did you mean 'W"),
+        (CLIMATE + FATIGUE.replace("283.5 MPa/m", "283.5 MPa"), r"'MPa' does not measure \[Pa/m\]"),
+        (CLIMATE + FATIGUE.replace("}", ", stress_concentration: 0.5}"), r"stress_concentration: given 0.5; .*>= 1"),
+        (CLIMATE + FATIGUE.replace("}", ", wind_speeds: [3, 2]}"), r"wind_speeds: given \[3, 2\]; .*lo < hi"),
+        (CLIMATE + FATIGUE.replace("}", ", scf: 2}"), r"fatigue.scf: given 2; allowed: no such field here"),
+        (CLIMATE.replace("20 year", "20"), r"climate.duration: given 20; .*year"),
+        (CLIMATE.replace("20 year", "20 m"), r"climate.duration: .*'m' does not measure"),
+        (CLIMATE.replace("shape: 2", "shape: 0"), r"climate.weibull.shape: given 0"),
+        (CLIMATE.replace(", shape: 2", ""), r"climate.weibull.shape: given nothing"),
+        ("climate: {duration: 20 year}\n", r"climate: given 'neither'; allowed: exactly one of weibull and table"),
+        (
+            "climate: {duration: 1 year, weibull: {scale: 7, shape: 2}, table: "
+            "[{speed: 1, probability: 0.5}, {speed: 2, probability: 0.5}]}\n",
+            r"climate: given 'weibull and table'",
+        ),
+        (
+            "climate: {duration: 1 year, table: [{speed: 1, probability: 0.5}, {speed: 2, probability: 0.4}]}\n",
+            r"climate.table: .*allowed: probabilities that sum to one. These sum to 0.9",
+        ),
+        (
+            "climate: {duration: 1 year, table: [{speed: 1, probability: 1.5}, {speed: 2, probability: -0.5}]}\n",
+            r"climate.table\[0\].probability: given 1.5",
+        ),
+        (
+            "climate: {duration: 1 year, table: [{speed: 1, probability: 1.0}]}\n",
+            r"allowed: a table of at least two different speeds",
+        ),
+        (
+            "climate: {duration: 1 year, table: [{speed: 1, probability: .5}, {speed: 2, probability: .5}], "
+            "sector: [0 deg, 90 deg]}\n",
+            r"climate.sector: .*a table that has directions",
+        ),
+        (
+            "climate: {duration: 1 year, table: [{speed: 1, probability: .5, direction: 90}, "
+            "{speed: 2, probability: .5, direction: 90 deg}]}\n",
+            r"climate.table\[0\].direction: given 90; .*deg",
+        ),
+        (
+            "climate: {duration: 1 year, table: [{speed: 1, probability: .5}, {speed: 2, probability: .4}, "
+            "{speed: 1, probability: .1}]}\n",
+            r"every speed and direction once. 1 m/s is there twice",
+        ),
+    ],
+)
+def test_bad_section(tmp_path, sections, says):
+    assert re.search(says, refusal_of(tmp_path, BASE + sections))
+
+
+@pytest.mark.parametrize(
+    ("table", "says"),
+    [
+        (None, r"climate.table: given 'wind.csv'; allowed: rows, or the name of a CSV file. wind.csv: No such file"),
+        ("", r"wind.csv has 0"),
+        ("speed,probability\n", r"wind.csv has 0"),
+        ("sped,probability\n1,1\n", r"wind.csv has a column 'sped'. Did you mean 'speed'"),
+        ("speed,speed,probability\n1,1,1\n", r"wind.csv has a column 'speed' twice"),
+        ("speed\n1\n2\n", r"wind.csv has no column probability"),
+        ("speed [kg],probability\n1,1\n", r"column 'speed \[kg\]': 'kg' does not measure"),
+        ("speed,probability,direction\n1,1,90\n", r"say the unit of direction, as in 'direction \[deg\]'"),
+        ("speed,probability\n1,0.5\n2\n", r"2 cells in every row. wind.csv:3 has 1"),
+        ("speed,probability\n1,0.5\n2,half\n", r"wind.csv:3: probability is 'half'"),
+        ("speed,probability\n1,0.5\n2,nan\n", r"wind.csv:3: probability is 'nan'"),
+        ("speed;probability\n1;0,5\n2;0,5\n", r"probability is '0,5'. Write the full stop as decimal sign"),
+        ("speed,probability\n1,0.5\n2,0.4\n", r"These sum to 0.9"),
+        ("speed,probability\n-1,0.5\n2,0.5\n", r"climate.table\[0\].speed: given -1"),
+        (b"speed,probability\n1,\xff\n", r"wind.csv is not text in UTF-8"),
+    ],
+)
+def test_bad_table(tmp_path, table, says):
+    assert re.search(says, refusal_of(tmp_path, BASE + "climate: {duration: 1 year, table: wind.csv}\n", table))
+
+
+def test_a_table_in_a_folder_is_no_table(tmp_path):
+    (tmp_path / "wind.csv").mkdir()
+    message = refusal_of(tmp_path, BASE + "climate: {duration: 1 year, table: wind.csv}\n")
+    assert "the name of a CSV file" in message
