@@ -7,14 +7,17 @@ from frahm.case.climate import Climate, ClimateRow, Weibull
 from frahm.case.fatigue import SN_CURVE_NAMES, Fatigue
 from frahm.case.fields import FieldFacts, FieldValue, field_table, field_values
 from frahm.case.loading import builtin_names, builtin_text, load_case, template_text
-from frahm.case.pipe import Pipe
+from frahm.case.mode_table import ModeTable
+from frahm.case.pipe import AnyPipe, Pipe
 from frahm.case.schema import case_schema
+from frahm.case.tube import Tube
 from frahm.case.wind import Wind
 
 __all__ = [
     "SN_CURVE_NAMES",
     "Absorber",
     "Analysis",
+    "AnyPipe",
     "Case",
     "Climate",
     "ClimateRow",
@@ -23,8 +26,10 @@ __all__ = [
     "FieldFacts",
     "FieldValue",
     "LinearLaw",
+    "ModeTable",
     "Pipe",
     "PolynomialLaw",
+    "Tube",
     "Weibull",
     "Wind",
     "builtin_names",

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from frahm.case.quantities import Coefficients, Label, Quantity
+from frahm.case.quantities import Coefficients, Label, Quantity, QuantityOrNothing
 from frahm.case.section import Section
 
 
@@ -68,6 +68,11 @@ class Absorber(Section):
         description="Moving mass that belongs to the length of pipe of the case.",
     )
     law: Law = Field(title="Force law of the absorber", description="Spring and damper between pipe and absorber.")
+    position: Annotated[float | None, QuantityOrNothing("m", "s", at_least=0)] = Field(
+        default=None,
+        title="Position of the absorber",
+        description="Distance from the first end of an elastic pipe; left out: where the pipe moves most.",
+    )
 
     def normalised(self, host_mass: float) -> dict[str, float]:
         """Parameters divided by the mass of the host.

@@ -7,18 +7,21 @@ import json
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import Field, ValidationError, field_validator, model_validator
 
 from frahm.case.absorber import Absorber
 from frahm.case.analysis import Analysis
 from frahm.case.climate import Climate
 from frahm.case.fatigue import Fatigue
-from frahm.case.pipe import Pipe
+from frahm.case.pipe import AnyPipe
 from frahm.case.problems import parameter_error
 from frahm.case.quantities import Label, refusal
 from frahm.case.section import Section
 from frahm.case.wind import Wind
 from frahm.errors import ParameterError, check_count, check_number, nearest
+
+_MOVES = 1e-6  # of the largest displacement of a mode
 
 
 class Case(Section):
@@ -36,7 +39,9 @@ class Case(Section):
     title: Annotated[str, Label()] = Field(
         default="", title="Title of the case", description="One line that says what the case is."
     )
-    pipe: Pipe = Field(title="Pipe", description="The pipe as one mode of vibration.")
+    pipe: AnyPipe = Field(
+        title="Pipe", description="The pipe: one mode of vibration, an elastic tube, or a table of modes."
+    )
     wind: Wind = Field(title="Wind", description="The wind that sheds vortices from the pipe.")
     absorbers: tuple[Absorber, ...] = Field(
         default=(), title="Absorbers", description="Masses on the pipe; none is allowed."
@@ -78,18 +83,37 @@ class Case(Section):
                 raise refusal("a name no other absorber has", path=f"absorbers[{index}].name", value=name)
         if self.fatigue is not None:
             self._fatigue_complete(self.fatigue)
+        self._check_positions()
         return self
 
     def _fatigue_complete(self, fatigue: Fatigue) -> None:
         if self.climate is None:
             hint = "Say how often which wind blows: climate: {duration: 20 year, weibull: {scale: ..., shape: ...}}."
             raise refusal("a case with the section climate", hint=hint, path="fatigue", value="a case without climate")
-        if fatigue.stress_per_displacement is None:
+        if fatigue.stress_per_displacement is None and self.pipe.kind == "mode":
             allowed = "a number [Pa/m], or text with a unit such as MPa/m, because the pipe is given as one mode"
             raise refusal(allowed, path="fatigue.stress_per_displacement", value=None)
 
+    def _check_positions(self) -> None:
+        for index, absorber in enumerate(self.absorbers):
+            where, path = absorber.position, f"absorbers[{index}].position"
+            if where is None:
+                continue
+            if self.pipe.kind == "mode":
+                raise refusal("nothing, because a pipe given as one mode moves alike all along", path=path, value=where)
+            if where > self.pipe.length:
+                raise refusal(f"a section of the pipe, 0 to {self.pipe.length:g} m", path=path, value=where)
+            try:
+                motion = self.pipe.modal.displacement(where)
+            except ParameterError as error:
+                raise refusal(error.allowed, path=path, value=where) from None
+            if not np.max(np.abs(motion)) > _MOVES:
+                raise refusal("a section that moves in one of the modes", path=path, value=where)
+
     def with_pipe(self, /, **changes: Any) -> Case:
         """Case with other values of the pipe, such as ``frequency="0.8 Hz"``; what is not named stays."""
+        if changes.get("kind", self.pipe.kind) != self.pipe.kind:  # another kind of pipe: nothing of the old one fits
+            return self._with({"pipe": changes})
         return self._with_section("pipe", changes)
 
     def with_wind(self, /, **changes: Any) -> Case:
@@ -122,10 +146,13 @@ class Case(Section):
         kappa: float | None = None,
         xi2: float | None = None,
         rho2: float | None = None,
+        position: float | str | None = None,
         name: str | None = None,
         index: int | None = None,
     ) -> Case:
         """Case with another absorber, given by values normalised by the mass of the pipe; what is not named stays.
+
+        The mass of an elastic pipe is the modal mass of its governing mode, with a largest displacement of 1.
 
         Parameters
         ----------
@@ -135,6 +162,8 @@ class Case(Section):
             Damping over mass of the pipe [1/s].
         rho2 : float, optional
             Mass of the absorber over mass of the pipe [-].
+        position : float or str, optional
+            Where on an elastic pipe it hangs [m].
         name, index : str, int, optional
             Which absorber: by name or by position; by default the first. If the case has none, a cubic sink is
             added, and all three values are needed.
@@ -165,6 +194,7 @@ class Case(Section):
             which = self._position(name, index)
             old = self.absorbers[which]
         new = _changed(old, si.get("kappa"), si.get("xi2"), si.get("rho2"), name)
+        new |= {} if position is None else {"position": position}
         return self._with({"absorbers": (*self.absorbers[:which], new, *self.absorbers[which + 1 :])})
 
     def to_dict(self) -> dict[str, Any]:

@@ -56,6 +56,14 @@ def files_beside(path: Path) -> Iterator[None]:
         _folder.reset(token)
 
 
+def csv_names(name: str) -> list[str]:
+    """Names of the columns of a CSV file, without their units; to be called by validators."""
+    lines = _lines(name)
+    head = lines[0][1] if lines else ""
+    cells = next(csv.reader([head], delimiter=_separator(head)), [])
+    return [match[1].lower() if (match := _HEAD.fullmatch(cell.strip())) else cell for cell in cells]
+
+
 def csv_rows(name: str, columns: Sequence[Column]) -> list[dict[str, float]]:
     """Rows of a CSV file as numbers in SI units, by column name; to be called by validators.
 
@@ -69,8 +77,8 @@ def csv_rows(name: str, columns: Sequence[Column]) -> list[dict[str, float]]:
     """
     lines = _lines(name)
     cells = [line for _, line in lines]
-    separator = ";" if cells and cells[0].count(";") > cells[0].count(",") else ","
-    table = [[cell.strip() for cell in row] for row in csv.reader(io.StringIO("\n".join(cells)), delimiter=separator)]
+    reader = csv.reader(io.StringIO("\n".join(cells)), delimiter=_separator(cells[0] if cells else ""))
+    table = [[cell.strip() for cell in row] for row in reader]
     if len(table) < 2 or len(table) > _MOST_ROWS:
         raise refusal(
             f"a CSV file with a head and 1 to {_MOST_ROWS} rows", hint=f"{name} has {max(len(table) - 1, 0)}."
@@ -83,6 +91,10 @@ def csv_rows(name: str, columns: Sequence[Column]) -> list[dict[str, float]]:
         values = zip(factors, row, strict=True)
         rows.append({column: factor * _number(name, number, column, cell) for (column, factor), cell in values})
     return rows
+
+
+def _separator(head: str) -> str:
+    return ";" if head.count(";") > head.count(",") else ","
 
 
 def _lines(name: str) -> list[tuple[int, str]]:

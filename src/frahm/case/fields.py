@@ -23,7 +23,8 @@ class FieldFacts:
     Attributes
     ----------
     path : str
-        Path in the case; ``[]`` stands for a position in a list, ``(cubic)`` for the kind of a law.
+        Path in the case; ``[]`` stands for a position in a list, ``(cubic)`` for the kind of a law. The kind that
+        need not be said, a pipe of one mode, is left out.
     title, description : str
         Long name and one sentence.
     symbol, unit : str
@@ -84,8 +85,32 @@ def _values(
         elif entries:
             for i, entry in enumerate(entries):
                 yield from _values(entry, f"{path}{name}[{i}].", f"{key}{name}{suffixes[type(entry)]}.", table)
-        elif value is not None or not suffixes:
+        elif value is not None:
             yield FieldValue(path + name, table[key + name], value, name in section.model_fields_set)
+
+
+@functools.cache
+def kinds(model: type[BaseModel]) -> dict[str, dict[str, str]]:
+    """Kinds of every section that comes in several, by its path, and what the path of each carries."""
+    found: dict[str, dict[str, str]] = {}
+    _collect_kinds(model, "", found)
+    return found
+
+
+def kind_of(section: type[BaseModel]) -> str:
+    """The word that says which kind a section is."""
+    return str(typing.get_args(section.model_fields["kind"].annotation)[0])
+
+
+def _collect_kinds(model: type[BaseModel], prefix: str, found: dict[str, dict[str, str]]) -> None:
+    for name, info in model.model_fields.items():
+        sections = list(_sections(info.annotation))
+        for suffix, section in sections:
+            if len(sections) > 1:
+                where = prefix + name + suffix[: suffix.rfind("(")] if "(" in suffix else prefix + name + suffix
+                word = suffix[suffix.rfind("(") :] if "(" in suffix else ""
+                found.setdefault(where, {})[kind_of(section)] = word
+            _collect_kinds(section, f"{prefix}{name}{suffix}.", found)
 
 
 def _walk(model: type[BaseModel], prefix: str) -> typing.Iterator[FieldFacts]:
@@ -106,9 +131,10 @@ def _sections(annotation: Any) -> typing.Iterator[tuple[str, type[BaseModel]]]:
     elif typing.get_origin(annotation) in (typing.Union, types.UnionType) and type(None) in arguments:
         yield from (found for kind in arguments for found in _sections(kind))
     elif typing.get_origin(annotation) in (typing.Union, types.UnionType):
-        for kind in arguments:
+        for argument in arguments:
+            kind = typing.get_args(argument)[0] if typing.get_origin(argument) is typing.Annotated else argument
             if isinstance(kind, type) and issubclass(kind, BaseModel):
-                yield f"({kind.model_fields['kind'].default})", kind
+                yield ("" if getattr(kind, "is_default_kind", False) else f"({kind_of(kind)})"), kind
     elif typing.get_origin(annotation) is typing.Annotated:
         yield from _sections(arguments[0])
 
@@ -143,8 +169,8 @@ def _allowed_without_door(info: FieldInfo) -> str:
     sections = dict(_sections(info.annotation))
     if not sections:
         return "one of " + ", ".join(map(str, typing.get_args(info.annotation)))
-    if all(suffix.startswith("(") for suffix in sections):
-        return "a mapping with kind: " + " or ".join(suffix.strip("()") for suffix in sections)
+    if len(sections) > 1:
+        return "a mapping with kind: " + " or ".join(kind_of(section) for section in sections.values())
     suffix, section = next(iter(sections.items()))
     names = ", ".join(section.model_fields)
     return f"a list of mappings with {names}" if suffix else f"a mapping with {names}"

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import functools
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
+from frahm.arrays import frozen
+from frahm.case.mode_table import ModeTable
 from frahm.case.quantities import Quantity
 from frahm.case.section import Section
+from frahm.case.tube import Tube
+from frahm.structure import ModalPipe
 
 
 class Pipe(Section):
     """The pipe as one mode of vibration."""
 
+    is_default_kind: ClassVar[bool] = True
+
+    kind: Literal["mode"] = Field(
+        default="mode",
+        title="Kind of pipe",
+        description="One mode; the others are tube, and modes for a table of them.",
+    )
     mass: Annotated[float, Quantity("kg", "m_1", above=0)] = Field(
         title="Mass of the pipe",
         description="Vibrating mass of the length of pipe given by `length`, added mass included.",
@@ -34,3 +46,29 @@ class Pipe(Section):
         title="Outer diameter of the pipe",
         description="The diameter the wind sees.",
     )
+
+    @property
+    def mass_per_length(self) -> float:
+        """Mass over length [kg/m]."""
+        return self.mass / self.length
+
+    @functools.cached_property
+    def modal(self) -> ModalPipe:
+        """The pipe as its single mode."""
+        return ModalPipe(
+            frequencies=frozen([self.frequency]),
+            masses=frozen([self.mass]),
+            damping_ratios=frozen([self.damping_ratio]),
+            lift_lengths=frozen([self.length]),
+        )
+
+
+def _kind(pipe: Any) -> Any:
+    """Kind of a pipe in a case file; one mode if nothing is said."""
+    return pipe.get("kind", "mode") if isinstance(pipe, dict) else getattr(pipe, "kind", "mode")
+
+
+AnyPipe = Annotated[
+    Annotated[Pipe, Tag("mode")] | Annotated[Tube, Tag("tube")] | Annotated[ModeTable, Tag("modes")],
+    Discriminator(_kind),
+]

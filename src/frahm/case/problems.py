@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from frahm.case.fields import FieldFacts, children, field_table
+from frahm.case.fields import FieldFacts, children, field_table, kinds
 from frahm.errors import ParameterError, nearest
 
 _SHOWN = 5
@@ -40,8 +39,8 @@ def parameter_error(error: ValidationError, model: type[BaseModel], where: Where
     """
     found = error.errors(include_url=False)
     unknown = [entry for entry in found if entry["type"] == "extra_forbidden"]
-    meant = {_table_path(entry["loc"][:-1], near) for entry in unknown if (near := _near(entry["loc"], model))}
-    rest = [entry for entry in found if entry not in unknown and _key(entry["loc"]) not in meant]
+    meant = {_key([*entry["loc"][:-1], near], model) for entry in unknown if (near := _near(entry["loc"], model))}
+    rest = [entry for entry in found if entry not in unknown and _key(entry["loc"], model) not in meant]
     problems = [_problem(entry, model, where) for entry in [*unknown, *rest]]
     first, others = problems[0], problems[1:]
     if not others:
@@ -52,27 +51,30 @@ def parameter_error(error: ValidationError, model: type[BaseModel], where: Where
     return ParameterError(first.name, first.value, first.allowed, where=first.where, hint=hint)
 
 
-def field_path(loc: Sequence[int | str], kinds: Sequence[str] = ("cubic", "linear", "polynomial")) -> str:
+def field_path(loc: Sequence[int | str], model: type[BaseModel]) -> str:
     """Path as a user writes it: absorbers[0].law.stiffness."""
-    parts = [part for i, part in enumerate(loc) if not (part in kinds and i and loc[i - 1] == "law")]
+    parts = [part for part, word in zip(loc, _words(loc, model), strict=True) if word is None]
     return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in parts).lstrip(".")
 
 
-def _key(loc: Sequence[int | str]) -> str:
+def _key(loc: Sequence[int | str], model: type[BaseModel]) -> str:
     """Path in the table of fields: absorbers[].law(cubic).stiffness."""
     path = ""
-    for i, part in enumerate(loc):
-        if isinstance(part, int):
-            path += "[]"
-        elif i and loc[i - 1] == "law" and i + 1 < len(loc):
-            path += f"({part})"
-        else:
-            path += f".{part}"
+    for part, word in zip(loc, _words(loc, model), strict=True):
+        path += ("[]" if isinstance(part, int) else f".{part}") if word is None else word
     return path.lstrip(".")
 
 
-def _table_path(parent: Sequence[int | str], name: str) -> str:
-    return _key([*parent, name])
+def _words(loc: Sequence[int | str], model: type[BaseModel]) -> list[str | None]:
+    """For each part of a location that is the kind of a section, what the path in the table of fields says for it."""
+    choices, path = kinds(model), ""
+    words: list[str | None] = []
+    for part in loc:
+        new = bool(words) and words[-1] is None and isinstance(part, str)
+        word = choices.get(path.lstrip("."), {}).get(str(part)) if new else None
+        path += ("[]" if isinstance(part, int) else f".{part}") if word is None else word
+        words.append(word)
+    return words
 
 
 def _near(loc: Sequence[int | str], model: type[BaseModel]) -> str | None:
@@ -80,13 +82,13 @@ def _near(loc: Sequence[int | str], model: type[BaseModel]) -> str | None:
 
 
 def _siblings(loc: Sequence[int | str], model: type[BaseModel]) -> list[str]:
-    parent = _key(loc)[: -len(str(loc[-1]))].rstrip(".")
+    parent = _key(loc, model)[: -len(str(loc[-1]))].rstrip(".")
     return children(model, parent)
 
 
 def _problem(entry: Mapping[str, Any], model: type[BaseModel], where: Where | None) -> ParameterError:
     loc, context = entry["loc"], entry.get("ctx", {})
-    path, value, hint = field_path(loc), entry.get("input"), None
+    path, value, hint = field_path(loc, model), entry.get("input"), None
     facts = _facts_at(loc, model)
     if entry["type"] == "parameter":
         path, allowed, hint = context["path"] or path, context["allowed"], context["hint"]
@@ -98,23 +100,22 @@ def _problem(entry: Mapping[str, Any], model: type[BaseModel], where: Where | No
     elif entry["type"] == "missing":
         value, allowed = _Nothing(), f"{facts.allowed} (required)" if facts else "a value (required)"
     elif entry["type"] in ("union_tag_invalid", "union_tag_not_found"):
-        return _wrong_kind(path, value, context, where)
+        return _wrong_kind(path, value, list(kinds(model).get(_key(loc, model), {})), where)
     else:
         allowed = facts.allowed if facts else entry["msg"]
     return ParameterError(path or "case", value, allowed, where=where(path) if where else None, hint=hint)
 
 
-def _wrong_kind(path: str, value: Any, context: Mapping[str, Any], where: Where | None) -> ParameterError:
-    kinds = re.findall(r"'(\w+)'", context.get("expected_tags", "")) or ["cubic", "linear", "polynomial"]
+def _wrong_kind(path: str, value: Any, known: list[str], where: Where | None) -> ParameterError:
     given = value.get("kind", _Nothing()) if isinstance(value, dict) else _Nothing()
-    near = nearest(given, kinds) if isinstance(given, str) else None
+    near = nearest(given, known) if isinstance(given, str) else None
     path = f"{path}.kind"
     hint = f"Did you mean {near!r}?" if near else None
-    return ParameterError(path, given, "one of " + ", ".join(kinds), where=where(path) if where else None, hint=hint)
+    return ParameterError(path, given, "one of " + ", ".join(known), where=where(path) if where else None, hint=hint)
 
 
 def _facts_at(loc: Sequence[int | str], model: type[BaseModel]) -> FieldFacts | None:
-    table, key = field_table(model), _key(loc)
+    table, key = field_table(model), _key(loc, model)
     facts = table.get(key) or table.get(key.removesuffix("[]"))
     if facts and key.endswith("[]"):
         return dataclasses.replace(facts, allowed=facts.allowed.replace("a list of mappings", "a mapping"))

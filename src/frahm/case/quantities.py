@@ -116,6 +116,53 @@ class Quantity(Door):
 
 
 @dataclass(frozen=True)
+class QuantityOrNothing(Quantity):
+    """A quantity that may be left unsaid: null is let in too."""
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return super().allowed + "; or nothing"
+
+    def read(self, value: Any) -> Any:
+        """Value in the SI unit, or None."""
+        return None if value is None else super().read(value)
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema."""
+        schema = super().json_schema()
+        return schema | {"anyOf": [*schema["anyOf"], {"type": "null"}]}
+
+
+@dataclass(frozen=True)
+class Quantities(Quantity):
+    """A list of quantities of one kind."""
+
+    shortest: int = 1
+    longest: int = 10_000
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return f"a list of {self.shortest} to {self.longest} numbers, each " + super().allowed
+
+    def read(self, value: Any) -> Any:
+        """Values in the SI unit."""
+        if not isinstance(value, list | tuple) or not self.shortest <= len(value) <= self.longest:
+            raise refusal(self.allowed)
+        return tuple(super(Quantities, self).read(0.0 if _vanishes(item) else item) for item in value)
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema."""
+        return {"type": "array", "minItems": self.shortest, "maxItems": self.longest, "items": super().json_schema()}
+
+
+def _vanishes(value: Any) -> bool:
+    """Whether an entry of a list is what another program writes for zero."""
+    return isinstance(value, float) and abs(value) < _SMALLEST
+
+
+@dataclass(frozen=True)
 class Count(Door):
     """A whole number, or one of a few words."""
 

@@ -49,13 +49,25 @@ def _consequences(case: Case) -> list[str]:
     lines = [
         f"  vortices are shed at {shedding.frequency_hz:.4g} Hz, detuning {shedding.detuning:.4g} rad/s",
         f"  lift amplitude {shedding.lift:.4g} N on {pipe.length:.4g} m of pipe",
+        *_about_modes(case),
         f"  reduced velocity {shedding.reduced_velocity:.3g}, Reynolds number {shedding.reynolds_number:.3g}",
     ]
     damping = 2 * pipe.damping_ratio * pipe.mass * pipe.frequency
     if damping:
-        lines.append(f"  resonant amplitude without absorbers {shedding.lift / (damping * pipe.frequency):.4g} m")
+        lift = shedding.lift * pipe.modal.lift_lengths[0] / pipe.length
+        lines.append(f"  resonant amplitude without absorbers {lift / (damping * pipe.frequency):.4g} m")
     for absorber in case.absorbers:
         values = absorber.normalised(pipe.mass)
         named = ", ".join(f"{key} {values[key]:.6g}" for key in ("rho2", "kappa", "xi2") if key in values)
         lines.append(f"  {absorber.name}, normalised by the mass of the pipe: {named}")
     return lines
+
+
+def _about_modes(case: Case) -> Iterator[str]:
+    """Frequencies and masses of the modes of an elastic pipe."""
+    modal = case.pipe.modal
+    if modal.shapes is None:
+        return
+    yield f"  governing mode: modal mass {modal.masses[0]:.5g} kg, lift on {modal.lift_lengths[0]:.4g} m of its motion"
+    named = ", ".join(f"{omega / (2 * math.pi):.4g}" for omega in sorted(modal.frequencies))
+    yield f"  natural frequencies {named} Hz"

@@ -9,7 +9,7 @@ from frahm.systems.parameters import (
     parameter_value,
     with_parameters,
 )
-from frahm.systems.pipe import as_system, build_system
+from frahm.systems.pipe import as_system, build_system, stress_row, stress_rows
 from frahm.systems.system import Element, Law, System
 
 __all__ = [
@@ -26,5 +26,7 @@ __all__ = [
     "excitation_frequency",
     "excitation_window",
     "parameter_value",
+    "stress_row",
+    "stress_rows",
     "with_parameters",
 ]

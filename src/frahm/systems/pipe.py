@@ -1,4 +1,4 @@
-"""The pipe of a case as a `System`: one mode, and a coordinate for every absorber."""
+"""The pipe of a case as a `System`: its modes, and a coordinate for every absorber."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from frahm.systems.system import Element, Law, System
 
 
 def build_system(case: Case | str | os.PathLike[str] | Mapping[str, Any]) -> System:
-    """Equations of motion of a case: the pipe as one mode, each absorber hung on it.
+    """Equations of motion of a case: the modes of the pipe, each absorber hung where it sits.
 
     Parameters
     ----------
@@ -27,8 +27,11 @@ def build_system(case: Case | str | os.PathLike[str] | Mapping[str, Any]) -> Sys
     Returns
     -------
     System
-        Absolute coordinates (x_1 of the pipe, then one per absorber), the lift on the pipe as forcing [N], detuning
-        counted from the natural frequency of the pipe without absorbers.
+        Coordinates: the displacement x_k of every mode of the pipe at the section where that mode moves most, the
+        governing mode first, then the absolute displacement of every absorber. An absorber at the section s feels
+        z = x_a - sum_k phi_k(s) x_k. The output is the pipe's displacement where its governing mode moves most; the
+        forcing is the lift on every mode [N]; detuning counts from the natural frequency of the governing mode
+        without absorbers.
 
     Raises
     ------
@@ -36,24 +39,57 @@ def build_system(case: Case | str | os.PathLike[str] | Mapping[str, Any]) -> Sys
         If the case cannot be read.
     """
     case = load_case(case)
-    pipe, size = case.pipe, 1 + len(case.absorbers)
-    damping, stiffness, forcing = np.zeros((size, size)), np.zeros((size, size)), np.zeros(size)
-    damping[0, 0] = 2 * pipe.damping_ratio * pipe.mass * pipe.frequency
-    stiffness[0, 0] = pipe.mass * pipe.frequency**2
-    forcing[0] = vortex_shedding(case).lift
+    modal = case.pipe.modal
+    n, count = modal.count, len(case.absorbers)
+    damping, stiffness = np.zeros((n + count, n + count)), np.zeros((n + count, n + count))
+    host = np.arange(n)
+    damping[host, host] = 2 * modal.damping_ratios * modal.masses * modal.frequencies
+    stiffness[host, host] = modal.masses * modal.frequencies**2
+    lift = vortex_shedding(case).lift * (modal.lift_lengths / case.pipe.length)
     return System(
-        mass=np.diag([pipe.mass, *(absorber.mass for absorber in case.absorbers)]),
+        mass=np.diag([*modal.masses, *(absorber.mass for absorber in case.absorbers)]),
         damping=damping,
         stiffness=stiffness,
-        forcing=forcing,
+        forcing=np.concatenate([lift, np.zeros(count)]),
         elements=[
-            Element(direction=_relative(i, size), law=_force_law(absorber))
-            for i, absorber in enumerate(case.absorbers, start=1)
+            Element(direction=_relative(modal.displacement(absorber.position), i, count), law=_force_law(absorber))
+            for i, absorber in enumerate(case.absorbers)
         ],
-        output=0,
-        reference_frequency=pipe.frequency,
+        output=np.concatenate([modal.displacement(), np.zeros(count)]),
+        reference_frequency=case.pipe.frequency,
         name=case.name,
     )
+
+
+def stress_row(case: Case | str | os.PathLike[str] | Mapping[str, Any], section: float | None = None) -> Floats:
+    """Bending stress at a section of an elastic pipe as a row over the coordinates of its `System`.
+
+    Parameters
+    ----------
+    case : Case, str, Path or dict
+        A case whose pipe is a tube, or a table of modes with stresses.
+    section : float, optional
+        Position along the pipe [m]; by default where the governing mode alone causes the largest stress.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        The stress of the outermost fibre is ``row @ x`` [Pa] at displacements x (n,) of the system of `build_system`.
+
+    Raises
+    ------
+    ParameterError
+        If the case cannot be read, the section is off the pipe, or the pipe is one rigid mode without stress.
+    """
+    case = load_case(case)
+    return np.concatenate([case.pipe.modal.stress(section), np.zeros(len(case.absorbers))])
+
+
+def stress_rows(case: Case | str | os.PathLike[str] | Mapping[str, Any]) -> tuple[Floats, Floats]:
+    """Sections [m] all along an elastic pipe, shape (s,), and the rows of `stress_row` at each, shape (s, n)."""
+    case = load_case(case)
+    sections = case.pipe.modal.stress_sections()
+    return sections, np.array([stress_row(case, float(section)) for section in sections])
 
 
 def as_system(case_or_system: Any) -> System:
@@ -76,11 +112,11 @@ def as_system(case_or_system: Any) -> System:
     return build_system(case_or_system)
 
 
-def _relative(coordinate: int, size: int) -> Floats:
-    """Direction n with n.x = x_coordinate - x_0."""
-    direction = np.zeros(size)
-    direction[0], direction[coordinate] = -1.0, 1.0
-    return direction
+def _relative(motion: Floats, absorber: int, count: int) -> Floats:
+    """Direction n with n.x = x_absorber - motion . (modal displacements)."""
+    own = np.zeros(count)
+    own[absorber] = 1.0
+    return np.concatenate([-motion, own])
 
 
 def _force_law(absorber: Absorber) -> Law:

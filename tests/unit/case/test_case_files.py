@@ -110,4 +110,4 @@ def test_round_trip(tmp_path, data):
     again = frahm.load_case(tmp_path / "a.yaml")
     assert again == case
     assert again.digest == case.digest
-    assert all(math.isfinite(value) for value in case.to_dict()["pipe"].values())
+    assert all(math.isfinite(value) for value in case.to_dict()["pipe"].values() if value != "mode")
