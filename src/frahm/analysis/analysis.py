@@ -22,6 +22,7 @@ from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import PERIODIC_BELOW
 from frahm.analysis.verdict import largest_motion, verdict
+from frahm.analysis.wind import wind
 from frahm.case import Case, field_values, load_case
 from frahm.harmonic_balance.branches import GOAL
 from frahm.time_integration.batch import TOLERANCE
@@ -46,6 +47,7 @@ STEPS = (
     Step("pipe without absorbers", without_absorber),
     Step("exact response by harmonic balance", exact_response),
     Step("slow flow", slow_flow_response),
+    Step("similarity numbers and onset criteria", wind),
     Step("births and merges of detached curves", detached_curve_margin),
     Step("slow manifold", manifold),
     Step("motions of the exact equations", motions),

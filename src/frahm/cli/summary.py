@@ -11,6 +11,7 @@ from pydantic import BaseModel
 from frahm.case import Case, field_values
 from frahm.loads import vortex_shedding
 
+_LISTED = 12  # pairs of a table that are still written out
 _HEADING = ("name", "title")
 
 
@@ -34,6 +35,8 @@ def _text(value: Any, unit: str) -> str:
         return "none"
     if isinstance(value, tuple) and isinstance(value[0], BaseModel):
         return f"{len(value)} rows"
+    if isinstance(value, tuple) and isinstance(value[0], tuple) and len(value) > _LISTED:
+        return f"{len(value)} pairs"
     if isinstance(value, tuple) and isinstance(value[0], tuple):
         return "[" + ", ".join(_text(entry, unit) for entry in value) + "]"
     if isinstance(value, tuple):

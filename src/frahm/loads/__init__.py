@@ -1,5 +1,16 @@
 """Room `loads`: what the wind does to the pipe."""
 
+from frahm.loads.amplitudes import (
+    AmplitudeEstimate,
+    AmplitudeEstimates,
+    ModeFactors,
+    amplitude_estimates,
+    eurocode_amplitude,
+    forced_amplitude,
+    griffin_skop_amplitude,
+    sarpkaya_amplitude,
+)
+from frahm.loads.onset import Criterion, onset_criteria, onset_sentence
 from frahm.loads.over_wind import (
     ExcitationOverWind,
     WindExcitation,
@@ -8,6 +19,14 @@ from frahm.loads.over_wind import (
     wind_excitation,
 )
 from frahm.loads.reynolds import ReynoldsCurve, lift_curve, strouhal_curve
+from frahm.loads.similarity import (
+    LockInBand,
+    Similarity,
+    lock_in_band,
+    scruton_number,
+    similarity,
+    skop_griffin_number,
+)
 from frahm.loads.vortex import (
     AIR_VISCOSITY,
     VortexShedding,
@@ -17,19 +36,39 @@ from frahm.loads.vortex import (
     shedding_frequency,
     vortex_shedding,
 )
+from frahm.loads.wake_oscillator import WakeOscillator, WakeState
 
 __all__ = [
     "AIR_VISCOSITY",
+    "AmplitudeEstimate",
+    "AmplitudeEstimates",
+    "Criterion",
     "ExcitationOverWind",
+    "LockInBand",
+    "ModeFactors",
     "ReynoldsCurve",
+    "Similarity",
     "VortexShedding",
+    "WakeOscillator",
+    "WakeState",
     "WindExcitation",
+    "amplitude_estimates",
+    "eurocode_amplitude",
     "excitation_over_wind",
+    "forced_amplitude",
+    "griffin_skop_amplitude",
     "lift_amplitude",
     "lift_curve",
+    "lock_in_band",
+    "onset_criteria",
+    "onset_sentence",
     "reduced_velocity",
     "reynolds_number",
+    "sarpkaya_amplitude",
+    "scruton_number",
     "shedding_frequency",
+    "similarity",
+    "skop_griffin_number",
     "speed_window",
     "strouhal_curve",
     "vortex_shedding",

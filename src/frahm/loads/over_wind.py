@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import brentq
 
 from frahm.arrays import Floats, finite_array, frozen, labelled
 from frahm.case import Case
@@ -107,6 +109,25 @@ class WindExcitation:
         found = _solve(Omega / self._turns, edges[piece], edges[piece + 1], first, slope)
         inside = (Omega >= ends[0] * (1 - EDGE)) & (Omega <= ends[-1] * (1 + EDGE))
         return np.where(inside, found, np.nan)
+
+    def speeds_of(self, frequency: float) -> Floats:
+        """All wind speeds [m/s] that shed at Omega [rad/s], ascending; there may be none, and more than one."""
+        low, high = self.speed_range
+        if math.isinf(high):  # beyond the last knot Omega is proportional to U
+            last = float(np.exp(self.strouhal.knots[-1])) * self.viscosity / self.diameter
+            high = 2 * max(last, frequency / self._turns / float(self.strouhal.values[-1]))
+        low = max(low, 1e-9 * high)
+        edges = self._edges(low, high)
+        # Omega = c U (St + b ln(U/U0)) turns where ln(U/U0) = -1 - St/b: between such points it ascends or descends.
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            turns = edges[:-1] * np.exp(-1 - self._strouhal_at(edges[:-1]) / self._slopes(edges))
+        turns = turns[(turns > edges[:-1]) & (turns < edges[1:])]
+        edges = np.unique(np.concatenate([edges, turns]))
+        excess = self.frequency(edges) - frequency
+        found = [float(U) for U in edges[excess == 0]]
+        for i in np.flatnonzero(excess[:-1] * excess[1:] < 0):
+            found.append(brentq(lambda U: float(self.frequency(U)) - frequency, edges[i], edges[i + 1], xtol=1e-15))
+        return np.array(sorted(found))
 
     @property
     def _turns(self) -> float:

@@ -12,6 +12,7 @@ from frahm.analysis import Analysis
 from frahm.case import Case, field_values
 from frahm.loads import vortex_shedding
 
+_LISTED = 12  # pairs of a table that are still written out
 _MARKS = {"pass": "✓ pass", "fail": "✗ fail", "unverified": "? unverified"}
 
 
@@ -63,6 +64,47 @@ def derived_rows(case: Case) -> list[tuple[str, str, str]]:
             text, unit = units[name]
             rows.append((f"{absorber.name}: {text}", number(value, 5), unit))
     return rows
+
+
+def similarity_rows(analysis: Analysis) -> list[tuple[str, str]]:
+    """Name and value of every similarity number."""
+    found = analysis.results["wind"]
+    band = found["lock_in_band"]
+    return [
+        ("Reduced velocity U / (f D)", number(found["reduced_velocity"], 3)),
+        ("Reynolds number", number(found["reynolds_number"], 3)),
+        ("Strouhal number", number(found["strouhal"], 3)),
+        ("Mass ratio m / (ρ D²)", number(found["mass_ratio"], 3)),
+        ("Mass damping K_s, the Scruton number", number(found["scruton_number"], 3)),
+        ("Skop-Griffin number S_G", number(found["skop_griffin_number"], 3)),
+        (f"Lock-in band [m/s], {band['standing']}", f"{number(band['low'], 3)} … {number(band['high'], 3)}"),
+        ("Time constant of the build-up 1/(ζω) [s]", number(found["build_up_time"], 3)),
+    ]
+
+
+def criterion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Name, condition, verdict, evidence and standing of every onset criterion."""
+    words = {True: "yes", False: "no", None: "not decided"}
+    return [
+        (row["name"], row["condition"], words[row["expects_vibration"]], row["detail"], row["standing"])
+        for row in analysis.results["wind"]["criteria"]
+    ]
+
+
+def estimate_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Name, ratio, amplitude, what went in and standing of every amplitude estimate."""
+    return [
+        (row["name"], number(row["ratio"], 3), number(row["amplitude"], 3), row["detail"], row["standing"])
+        for row in analysis.results["wind"]["estimates"]
+    ]
+
+
+def estimate_sentence(analysis: Analysis) -> str:
+    """The interval of the estimates beside the computed amplitude."""
+    found = analysis.results["wind"]
+    low, high, computed = (number(value, 3) for value in (*found["interval"], found["computed"]))
+    used = f"this analysis uses the harmonic lift of the case, which gives {computed} m"
+    return f"The estimates span {low} … {high} m; {used}."
 
 
 def special_point_rows(analysis: Analysis, method: str = "harmonic-balance") -> list[tuple[str, ...]]:
@@ -224,7 +266,8 @@ def _value(value: Any) -> str:
     if value == () or (isinstance(value, tuple) and isinstance(value[0], BaseModel)):
         return f"{len(value)} rows"
     if isinstance(value, tuple) and isinstance(value[0], tuple):
-        return "; ".join(" → ".join(number(entry) for entry in pair) for pair in value)
+        pairs = "; ".join(" → ".join(number(entry) for entry in pair) for pair in value)
+        return pairs if len(value) <= _LISTED else f"{len(value)} pairs"
     if isinstance(value, tuple):
         return " … ".join(number(float(entry), 6) for entry in value) if len(value) == 2 else str(list(value))
     return number(value, 6)

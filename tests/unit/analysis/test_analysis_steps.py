@@ -8,9 +8,11 @@ import frahm
 from frahm.analysis import STEPS, Work, analyse, load_analysis, margin_sentence, save_analysis
 from frahm.analysis import analysis as analysis_module
 from frahm.analysis import cross_check as cross_check_module
+from frahm.analysis.analysis import plain
 from frahm.analysis.cross_check import cross_check
 from frahm.analysis.margin import detached_curve_margin
 from frahm.analysis.response import exact_response, slow_flow_response
+from frahm.analysis.wind import wind
 from frahm.reproduction.motions import equilibrium_state
 from frahm.slow_flow import slow_flow_of
 from frahm.slow_flow.motion import slow_velocity
@@ -236,3 +238,14 @@ def test_exact_responses_at_the_edges_hold_against_integration(case):
     check = checks_of(section)["Harmonic balance and integration agree on stable responses"]
     assert check.status == "pass"
     assert section.results["cross_check"]["points"] >= 3
+
+
+def test_wind_step_lists_criteria_and_estimates_beside_the_computed_amplitude():
+    found = wind(Work(CASE)).results["wind"]
+    assert found["reduced_velocity"] == pytest.approx(4.54, abs=5e-3)
+    assert found["computed"] == pytest.approx(0.0867, abs=5e-5)
+    assert found["interval"][0] < found["computed"] < found["interval"][1]
+    assert found["build_up_time"] == pytest.approx(136, abs=0.5)
+    assert {row["standing"] for row in found["criteria"]} == {"verified", "secondary"}
+    assert [row["expects_vibration"] for row in found["criteria"]] == [False, True, True, None, True, True]
+    assert json.loads(json.dumps(plain(found), allow_nan=False))["criteria"][1]["speeds"][1] is None
