@@ -8,6 +8,7 @@ from frahm.loads.amplitudes import (
     eurocode_amplitude,
     forced_amplitude,
     griffin_skop_amplitude,
+    mode_factors,
     sarpkaya_amplitude,
 )
 from frahm.loads.onset import Criterion, onset_criteria, onset_sentence
@@ -60,6 +61,7 @@ __all__ = [
     "lift_amplitude",
     "lift_curve",
     "lock_in_band",
+    "mode_factors",
     "onset_criteria",
     "onset_sentence",
     "reduced_velocity",

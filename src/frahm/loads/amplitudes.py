@@ -6,7 +6,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from frahm.case import Case
+import numpy as np
+
+from frahm.case import Case, ModeTable, Tube
 from frahm.case.reynolds import LIFT_CURVES
 from frahm.errors import check_choice, check_number
 from frahm.loads.reynolds import published_curve, strouhal_curve
@@ -14,13 +16,16 @@ from frahm.loads.similarity import lock_in_band, scruton_number, skop_griffin_nu
 from frahm.loads.vortex import reynolds_number, vortex_shedding
 from frahm.loads.wake_oscillator import WakeOscillator
 
+_NAMES = ("EN 1991-1-4, method 1", "Griffin and Skop", "Sarpkaya", "Facchinetti et al., Eq. 35")
 SPANS = ("rigid", "cantilever", "simple span")
 _ITERATIONS = 200
+_GAUSS, _PANELS = 8, 64  # nodes a panel, panels: exact to rounding for the shapes of beams
+_CANTILEVER = 1.305  # gamma of the first mode of a cantilever
 
 
 @dataclass(frozen=True)
 class ModeFactors:
-    """What the shape of a mode does to an estimate; the defaults are those of a rigid pipe.
+    """What the shape of a mode does to the estimates; the defaults are those of a rigid pipe, see `mode_factors`.
 
     Parameters
     ----------
@@ -95,6 +100,45 @@ class AmplitudeEstimates:
         """Smallest and largest amplitude [m] of the estimates that have a value."""
         ratios = [estimate.ratio for estimate in self.estimates if not math.isnan(estimate.ratio)]
         return self.diameter * min(ratios), self.diameter * max(ratios)
+
+
+def mode_factors(case: Case) -> ModeFactors:
+    """Factors of the governing mode of a case: exact for one mode and for tubes.
+
+    A table of modes knows its shapes at a few sections only: gamma is then that of a cantilever, the largest of the
+    usual shapes, and the lift is taken to be in phase all along, as it is for spans EN 1991-1-4 gives no factor for.
+    """
+    pipe = case.pipe
+    if isinstance(pipe, Tube):
+        modes, mode = pipe.beam_modes, pipe.governing_mode - 1
+        nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
+        edges = np.linspace(0.0, pipe.length, _PANELS + 1)
+        half = 0.5 * pipe.length / _PANELS
+        shape = modes.shape((edges[:-1, None] + half * (1 + nodes)).ravel())[:, mode]
+        fourth = half * float(np.tile(weights, _PANELS) @ shape**4)
+        span = _span(pipe)
+        return ModeFactors(
+            load=float(modes.participations[mode]),
+            amplitude=math.sqrt(float(modes.squares[mode]) / fourth),
+            span=span,
+            slenderness=None if span == "rigid" else pipe.length / pipe.diameter,
+        )
+    if isinstance(pipe, ModeTable):
+        modal, mass = pipe.modal, pipe.mass_per_length
+        load = 1.0 if mass is None else float(modal.lift_lengths[0] * mass / modal.masses[0])
+        return ModeFactors(load=load, amplitude=_CANTILEVER)
+    return ModeFactors()
+
+
+def _span(tube: Tube) -> str:
+    """The span EN 1991-1-4 gives a correlation factor for, "rigid" if it gives none."""
+    held = [support for support in tube.supports if support.kind != "free"]
+    if tube.governing_mode != 1 or tube.point_masses:
+        return "rigid"
+    if len(held) == 1 and held[0].kind == "clamped" and held[0].at in (0.0, tube.length):
+        return "cantilever"
+    ends = {support.at for support in held if support.kind == "pinned" and not support.rotation}
+    return "simple span" if len(held) == 2 and ends == {0.0, tube.length} else "rigid"
 
 
 def forced_amplitude(
@@ -209,52 +253,53 @@ def amplitude_estimates(case: Case, factors: ModeFactors | None = None) -> Ampli
     ----------
     case : Case
     factors : ModeFactors, optional
-        Of the mode; those of a rigid pipe by default.
+        Of the mode; those of the case by default.
 
     Returns
     -------
     AmplitudeEstimates
         Forced by the lift of the case, EN 1991-1-4 method 1, Griffin and Skop, Sarpkaya, and Facchinetti et al.; the
-        last one is for a rigid pipe, whatever the factors.
+        first one knows the mode of the case anyway, and the last one is for a rigid pipe, whatever the factors.
 
     Raises
     ------
     ParameterError
         If the Strouhal number is not given at the wind speed of the case.
     """
-    given = factors or ModeFactors()
-    pipe, rho = case.pipe, case.wind.air_density
+    given = factors or mode_factors(case)
+    pipe = case.pipe
     critical = lock_in_band(case).resonance
-    if math.isnan(critical):  # the tables do not reach the resonance: what they say nearest to it
+    if math.isnan(critical):  # the tables do not reach the resonance: what they say at the wind of the case
         critical = case.wind.speed
-    mass = pipe.mass / pipe.length if given.mass_per_length is None else given.mass_per_length
-    Ks = scruton_number(mass, pipe.damping_ratio, pipe.diameter, rho)
+    mass = given.mass_per_length or pipe.mass_per_length
+    if mass is None:
+        return AmplitudeEstimates((_forced(case), *map(_unknown, _NAMES)), pipe.diameter)
+    Ks = scruton_number(mass, pipe.damping_ratio, pipe.diameter, case.wind.air_density)
     St = float(strouhal_curve(case.wind).value(reynolds_number(critical, pipe.diameter, case.wind.viscosity)))
-    estimates = (
-        _forced(case, given, mass),
-        _eurocode(case, given, Ks, St, critical),
-        *_empirical(given, skop_griffin_number(Ks, St)),
-        _facchinetti(Ks),
-    )
+    SG = skop_griffin_number(Ks, St)
+    estimates = (_forced(case), _eurocode(case, given, Ks, St, critical), *_empirical(given, SG), _facchinetti(Ks))
     return AmplitudeEstimates(estimates, pipe.diameter)
 
 
-def _forced(case: Case, factors: ModeFactors, mass: float) -> AmplitudeEstimate:
+def _unknown(name: str) -> AmplitudeEstimate:
+    return AmplitudeEstimate(name, math.nan, "The case does not say the mass per length of the pipe.", "-", "-")
+
+
+def _forced(case: Case) -> AmplitudeEstimate:
     shedding, pipe = vortex_shedding(case), case.pipe
-    lift = shedding.lift / pipe.length
-    amplitude = forced_amplitude(lift, mass, pipe.damping_ratio, pipe.frequency, factors.load)
-    return AmplitudeEstimate(
-        "Harmonic lift of the case, in resonance", amplitude / pipe.diameter,
-        f"C_L = {shedding.lift_coefficient:.4g} at {shedding.speed:g} m/s, g = {factors.load:.4g}.",
-        "verified", "closed form of the forced oscillator",
-    )  # fmt: skip
+    length = float(pipe.modal.lift_lengths[0])
+    amplitude = forced_amplitude(shedding.lift / pipe.length * length, pipe.mass, pipe.damping_ratio, pipe.frequency)
+    detail = f"C_L = {shedding.lift_coefficient:.4g} at {shedding.speed:g} m/s, generalised lift length {length:.4g} m."
+    source = "closed form of the forced oscillator"
+    return AmplitudeEstimate("Harmonic lift of the case, in resonance", amplitude / pipe.diameter, detail,
+                             "verified", source)  # fmt: skip
 
 
 def _eurocode(case: Case, factors: ModeFactors, Ks: float, St: float, critical: float) -> AmplitudeEstimate:
     curve = published_curve("en1991", LIFT_CURVES)
     Re = reynolds_number(critical, case.pipe.diameter, case.wind.viscosity)
     lift = float(curve.value(Re))
-    name, source = "EN 1991-1-4, method 1", "annex E.1.5.2; c_lat,0 and K_w of the cantilever read in public code"
+    name, source = _NAMES[0], "annex E.1.5.2; c_lat,0 and K_w of the cantilever read in public code"
     if math.isnan(lift):
         detail = f"c_lat,0 is not given at Re = {Re:.3g}."
         return AmplitudeEstimate(name, math.nan, detail, "partly secondary", source)
@@ -270,9 +315,9 @@ def _eurocode(case: Case, factors: ModeFactors, Ks: float, St: float, critical: 
 def _empirical(factors: ModeFactors, SG: float) -> tuple[AmplitudeEstimate, AmplitudeEstimate]:
     detail = f"S_G = {SG:.3g}, gamma = {factors.amplitude:.4g}."
     return (
-        AmplitudeEstimate("Griffin and Skop", griffin_skop_amplitude(SG, factors.amplitude), detail,
+        AmplitudeEstimate(_NAMES[1], griffin_skop_amplitude(SG, factors.amplitude), detail,
                           "secondary", "quoted from memory"),
-        AmplitudeEstimate("Sarpkaya", sarpkaya_amplitude(SG, factors.amplitude), detail,
+        AmplitudeEstimate(_NAMES[2], sarpkaya_amplitude(SG, factors.amplitude), detail,
                           "secondary", "quoted from memory"),
     )  # fmt: skip
 
@@ -281,7 +326,7 @@ def _facchinetti(Ks: float) -> AmplitudeEstimate:
     wake = WakeOscillator()
     SG = skop_griffin_number(Ks, wake.strouhal)
     return AmplitudeEstimate(
-        "Facchinetti et al., Eq. 35", wake.lock_in_amplitude(SG),
+        _NAMES[3], wake.lock_in_amplitude(SG),
         f"S_G = {SG:.3g} with the published constants (St = {wake.strouhal:g}, C_L0 = {wake.lift_coefficient:g}).",
         "verified", "doi 10.1016/j.jfluidstructs.2003.12.004",
     )  # fmt: skip

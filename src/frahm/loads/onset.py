@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from frahm.case import Case
+from frahm.case import Case, Tube
 from frahm.loads.similarity import LockInBand, Similarity, lock_in_band, similarity
 
 _REVIEW = "read in A. Kvitrud's review of vortex-induced vibrations offshore"
@@ -53,7 +53,7 @@ def onset_criteria(
     numbers : Similarity, optional
         Similarity numbers of the mode; those of a rigid pipe at the wind speed of the case by default.
     slenderness : float, optional
-        Largest length over width of the whole structure, for EN 1991-1-4; unknown by default.
+        Largest length over width, for EN 1991-1-4; that of a tube by default, otherwise unknown.
 
     Raises
     ------
@@ -62,6 +62,8 @@ def onset_criteria(
     """
     numbers = similarity(case) if numbers is None else numbers
     band = lock_in_band(case)
+    if slenderness is None and isinstance(case.pipe, Tube):
+        slenderness = case.pipe.length / case.pipe.diameter
     return [
         _limits(case, numbers, "Brown & Root 1985", (4.7, 8.0), 16.0),
         _limits(case, numbers, "DNV 1977", (3.5, math.inf), 16.0, strict=True),
@@ -80,6 +82,9 @@ def _limits(
     meets = (low < V if strict else low <= V) and high >= V and scruton > K
     window = f"V_R > {low:g}" if math.isinf(high) else f"{low:g} <= V_R <= {high:g}"
     reach = f"{low * scale:.3g} m/s and more" if math.isinf(high) else f"{low * scale:.3g} ... {high * scale:.3g} m/s"
+    if math.isnan(K):
+        detail = f"V_R = {V:.3g}; K_s is not known: the case does not say the mass per length of the pipe."
+        return Criterion(name, f"{window} and K_s < {scruton:g}", None, None, detail, "verified", _REVIEW)
     where = f"the reduced velocities are those of {reach}" if scruton > K else "at no speed is K_s low enough"
     return Criterion(
         name=name,
@@ -141,10 +146,10 @@ def _statfjord(numbers: Similarity) -> Criterion:
     return Criterion(
         name="Statfjord A 1978 (counter-example)",
         condition="K_s <= 28: large oscillations were seen at K_s = 28, beyond every limit above",
-        expects_vibration=K <= 28,
+        expects_vibration=None if math.isnan(K) else K <= 28,
         speeds=None,
         detail=f"K_s = {K:.3g}"
-        + ("." if K <= 28 else ": beyond what was seen there, which proves nothing for this pipe."),
+        + (": beyond what was seen there, which proves nothing for this pipe." if K > 28 else "."),
         standing="verified",
         source=_REVIEW,
     )

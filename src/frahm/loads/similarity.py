@@ -10,7 +10,7 @@ from frahm.arrays import Floats
 from frahm.case import Case
 from frahm.errors import check_number
 from frahm.loads.over_wind import wind_excitation
-from frahm.loads.vortex import VortexShedding, vortex_shedding
+from frahm.loads.vortex import vortex_shedding
 
 
 @dataclass(frozen=True)
@@ -117,29 +117,25 @@ def similarity(case: Case, speed: float | None = None, *, mass_per_length: float
     speed : float, optional
         Wind speed [m/s]; that of the case by default.
     mass_per_length : float, optional
-        Equivalent mass m_e of the mode [kg/m]; by default the mass of the case over its length, that of a rigid pipe.
+        Equivalent mass m_e of the mode [kg/m]; that of the case by default. Where neither says it, mass ratio, K_s and
+        S_G are NaN.
 
     Raises
     ------
     ParameterError
         If the Strouhal number is not given at this speed.
     """
-    pipe, shedding = case.pipe, vortex_shedding(case, speed)
-    mass = pipe.mass / pipe.length if mass_per_length is None else mass_per_length
-    return _numbers(case, shedding, mass)
-
-
-def _numbers(case: Case, shedding: VortexShedding, mass: float) -> Similarity:
-    pipe, rho = case.pipe, case.wind.air_density
-    K = scruton_number(mass, pipe.damping_ratio, pipe.diameter, rho)
+    pipe, rho, shedding = case.pipe, case.wind.air_density, vortex_shedding(case, speed)
+    mass = pipe.mass_per_length if mass_per_length is None else mass_per_length
+    K = math.nan if mass is None else scruton_number(mass, pipe.damping_ratio, pipe.diameter, rho)
     return Similarity(
         reduced_velocity=shedding.reduced_velocity,
         reynolds_number=shedding.reynolds_number,
         strouhal=shedding.strouhal,
-        mass_ratio=mass / (rho * pipe.diameter**2),
+        mass_ratio=math.nan if mass is None else mass / (rho * pipe.diameter**2),
         logarithmic_decrement=2 * math.pi * pipe.damping_ratio,
         scruton_number=K,
-        skop_griffin_number=skop_griffin_number(K, shedding.strouhal),
+        skop_griffin_number=math.nan if mass is None else skop_griffin_number(K, shedding.strouhal),
     )
 
 

@@ -16,7 +16,7 @@ _LISTED = 12  # pairs of a table that are still written out
 _MARKS = {"pass": "✓ pass", "fail": "✗ fail", "unverified": "? unverified"}
 
 
-_GREEK = {"omega": "ω", "zeta": "ζ", "rho": "ρ", "sigma": "σ"}
+_GREEK = {"omega": "ω", "zeta": "ζ", "rho": "ρ", "sigma": "σ", "nu": "ν"}
 
 
 class InputRow(NamedTuple):
