@@ -47,7 +47,12 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
     force, dforce = np.empty(r, np.complex128), np.empty(r, np.complex128)
     for index in range(count):
         if multipliers[index].imag < 0.0:
-            continue  # the conjugate of one refined before or after
+            if index > 0 and abs(multipliers[index - 1] - multipliers[index].conjugate()) < 1e-6:
+                continue  # the conjugate of the one refined before
+            for after in range(index + 1, multipliers.size):  # rounding decides which of a pair comes first
+                if abs(multipliers[after] - multipliers[index].conjugate()) < 1e-6:
+                    multipliers[index], multipliers[after] = multipliers[after], multipliers[index]
+                    break
         start = cmath.log(multipliers[index]) / span
         lam, v, w = start, np.ones(n, np.complex128), np.ones(n, np.complex128)
         for i in range(n):  # a start that no symmetry makes orthogonal to the vector sought
