@@ -42,6 +42,8 @@ _PUBLIC = {
     "basin_map": "frahm.attractors",
     "worst_case": "frahm.attractors",
     "modulated_response": "frahm.attractors",
+    "modulated_branches": "frahm.attractors",
+    "ModulatedCurve": "frahm.attractors",
     "WorstCase": "frahm.attractors",
 }
 

@@ -146,3 +146,16 @@ def test_the_range_of_modulated_motion(kappa, low, high, peak, alone):
 def test_a_sink_that_never_modulates_the_pipe():
     data = frahm.modulated_response(CASE.with_absorber(kappa=24.425), detuning=(-0.05, 0.05), points=5)
     assert data.sizes["point"] == 0
+
+
+@pytest.mark.parametrize(
+    ("kappa", "low", "high", "peak"), [(97.97, -0.002, 0.028, 0.0315), (367.38, -0.045, 0.062, 0.0170)]
+)
+def test_the_branch_of_the_slow_flow_spans_the_modulated_range(kappa, low, high, peak):
+    curve = frahm.modulated_branches(CASE.with_absorber(kappa=kappa), detuning=(-0.1, 0.1), looks=11)
+    main = max(curve.ranges, key=lambda r: r[1] - r[0])
+    np.testing.assert_allclose(main, (low, high), atol=4e-3)
+    middle = curve.stable & (np.abs(curve.detuning) < 2e-3)
+    np.testing.assert_allclose(curve.pipe_max[middle], peak, rtol=0.02)
+    together = [lo <= 0.0 <= hi for lo, hi in curve.coexistence]
+    assert any(together) == (kappa < 100)

@@ -4,6 +4,18 @@ from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.attractors.basins import basin_map
 from frahm.attractors.finding import find_attractors
 from frahm.attractors.modulated import modulated_response
+from frahm.attractors.modulated_branches import modulated_branches
+from frahm.attractors.modulated_curve import ModulatedCurve
 from frahm.attractors.worst import WorstCase, worst_case
 
-__all__ = ["Attractor", "AttractorSet", "WorstCase", "basin_map", "find_attractors", "modulated_response", "worst_case"]
+__all__ = [
+    "Attractor",
+    "AttractorSet",
+    "ModulatedCurve",
+    "WorstCase",
+    "basin_map",
+    "find_attractors",
+    "modulated_branches",
+    "modulated_response",
+    "worst_case",
+]

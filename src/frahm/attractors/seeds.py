@@ -6,13 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from frahm.arrays import Floats
+from frahm.arrays import Complexes, Floats
 from frahm.attractors.orbits import orbit_size, unstable_directions
 from frahm.attractors.stroboscope import Stroboscope
 from frahm.errors import ParameterError
 from frahm.harmonic_balance import PeriodicResponse
 from frahm.slow_flow import slow_flow_of
 from frahm.slow_flow.manifold import slow_manifold
+from frahm.systems import System
 
 _PUSH = 1e-3  # of the orbit's size, along a direction it is unstable in
 _PHASES = np.exp(0.5j * np.pi * np.arange(4))
@@ -51,7 +52,11 @@ def jump_states(strobe: Stroboscope) -> Floats:
             X = relative * (nu - 1 + 1j * manifold.lam)
             amplitudes += [(X * turn, relative * turn) for turn in _PHASES]
     x, z = np.array(amplitudes).T
-    a, b = -strobe.system.elements[0].direction[0], strobe.system.elements[0].direction[1]
-    host, sink = x / a, (x + z) / b
-    states = np.column_stack([host.real, -W * host.imag, sink.real, -W * sink.imag])
-    return np.asarray(states)
+    return states_of_amplitudes(strobe.system, x, z, W)
+
+
+def states_of_amplitudes(system: System, X: Complexes, Z: Complexes, frequency: float) -> Floats:
+    """States (k, 4) at phase 0 of one mode with one sink that swings with complex amplitudes X, Z (k,) [m]."""
+    a, b = -system.elements[0].direction[0], system.elements[0].direction[1]
+    host, sink = X / a, (X + Z) / b
+    return np.column_stack([host.real, -frequency * host.imag, sink.real, -frequency * sink.imag])
