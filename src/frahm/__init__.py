@@ -45,6 +45,8 @@ _PUBLIC = {
     "modulated_branches": "frahm.attractors",
     "ModulatedCurve": "frahm.attractors",
     "WorstCase": "frahm.attractors",
+    "fatigue_damage": "frahm.assessment",
+    "FatigueDamage": "frahm.assessment",
 }
 
 __all__ = ["__version__", *_PUBLIC]

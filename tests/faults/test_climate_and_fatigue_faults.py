@@ -110,3 +110,55 @@ def test_a_table_in_a_folder_is_no_table(tmp_path):
     (tmp_path / "wind.csv").mkdir()
     message = refusal_of(tmp_path, BASE + "climate: {duration: 1 year, table: wind.csv}\n")
     assert "the name of a CSV file" in message
+
+
+FULL = BASE + CLIMATE + FATIGUE
+
+
+@pytest.mark.parametrize(
+    ("text", "arguments", "says"),
+    [
+        (BASE, {}, r"fatigue: given None; allowed: a case with the section fatigue"),
+        (FULL, {"bins": 3}, r"bins: given 3; allowed: a whole number >= 4"),
+        (FULL, {"bins": 4.5}, r"bins: given 4.5"),
+        (FULL, {"samples": 0}, r"samples: given 0"),
+        (FULL, {"workers": 0}, r"workers: given 0"),
+        (FULL, {"wind": (3, 2)}, r"wind: given \(3.0, 2.0\); allowed: two wind speeds \(lo, hi\) with lo < hi"),
+        (FULL, {"wind": 2.7}, r"wind: given 2.7; allowed: two wind speeds"),
+        (FULL, {"wind": (0, 2)}, r"wind\[0\]: given 0"),
+        (FULL.replace("strouhal: 0.225", "strouhal: [[1e5, 0.225], [1.5e5, 0.225]]"), {"wind": (2, 9)},
+         r"speeds within 1.9685 \.\.\. 2.95276 m/s. Beyond them wind.strouhal is not given"),
+    ],
+)  # fmt: skip
+def test_bad_calls(tmp_path, text, arguments, says):
+    (tmp_path / "case.yaml").write_text(text, encoding="utf-8")
+    case = frahm.load_case(tmp_path / "case.yaml")
+    with pytest.raises(frahm.ParameterError, match=says):
+        frahm.fatigue_damage(case, **arguments)
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"position": "40 m"}, r"fatigue.position: given 40.0; allowed: sections of the pipe, 0 to 31.2 m"),
+        ({"stress_per_displacement": "1 MPa/m"}, r"stress_per_displacement: given 1000000.0; allowed: nothing"),
+        ({"position": -1}, r"fatigue.position: given -1"),
+    ],
+)
+def test_bad_detail_of_an_elastic_pipe(changes, says):
+    with pytest.raises(frahm.ParameterError, match=says):
+        frahm.load_case("jacket-pipe-elastic").with_fatigue(**changes)
+
+
+def test_a_position_on_a_pipe_that_has_none():
+    case = frahm.load_case("jacket-pipe").with_climate(duration="20 year", weibull={"scale": 7, "shape": 2})
+    with pytest.raises(frahm.ParameterError, match=r"fatigue.position: given 3.0; allowed: nothing"):
+        case.with_fatigue(curve="D", stress_per_displacement=1e8, position=3)
+
+
+def test_winds_left_out_by_the_band_are_said(tmp_path):
+    """The band misses the resonance: what lies outside is more than what is counted."""
+    (tmp_path / "case.yaml").write_text(FULL, encoding="utf-8")
+    found = frahm.fatigue_damage(frahm.load_case(tmp_path / "case.yaml"), bins=4, wind=(2.8, 2.9))
+    assert not found.verified
+    assert "Winds outside the band" in found.unverified[0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -119,6 +120,17 @@ def attractors_from(
         periods=periods,
         outcome=Outcome.DONE if np.all(counted) and not rest.interrupted else Outcome.INTERRUPTED,
     )
+
+
+def attractors_reached(
+    strobe: Stroboscope, responses: Sequence[PeriodicResponse], states: Floats, periods: int
+) -> list[Attractor]:
+    """Attractors that motions from the states (k, 2n) end on; they say nothing of basins: their fractions are 0."""
+    settling = begin_settling(strobe, responses, periods)
+    settled = settling.settle(states)
+    found = describe(settling, settled, np.zeros(len(states), dtype=bool), exponents=False)
+    reached = [attractor for labels, attractor in found if np.isin(settled.labels, labels).any()]
+    return [dataclasses.replace(attractor, basin_fraction=0.0) for attractor in reached]
 
 
 def begin_settling(strobe: Stroboscope, responses: Sequence[PeriodicResponse], periods: int) -> Settling:

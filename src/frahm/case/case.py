@@ -90,9 +90,22 @@ class Case(Section):
         if self.climate is None:
             hint = "Say how often which wind blows: climate: {duration: 20 year, weibull: {scale: ..., shape: ...}}."
             raise refusal("a case with the section climate", hint=hint, path="fatigue", value="a case without climate")
-        if fatigue.stress_per_displacement is None and self.pipe.kind == "mode":
-            allowed = "a number [Pa/m], or text with a unit such as MPa/m, because the pipe is given as one mode"
-            raise refusal(allowed, path="fatigue.stress_per_displacement", value=None)
+        stress, where = fatigue.stress_per_displacement, fatigue.position
+        path = "fatigue.stress_per_displacement"
+        if self.pipe.kind == "mode":
+            if stress is None:
+                allowed = "a number [Pa/m], or text with a unit such as MPa/m, because the pipe is given as one mode"
+                raise refusal(allowed, path=path, value=None)
+            if where is not None:
+                allowed = "nothing, because a pipe given as one mode has no sections"
+                raise refusal(allowed, path="fatigue.position", value=where)
+            return
+        if stress is not None:
+            raise refusal("nothing, because the stress follows from the modes of the pipe", path=path, value=stress)
+        try:
+            self.pipe.modal.stress(where)
+        except ParameterError as error:
+            raise refusal(error.allowed, hint=error.hint, path="fatigue.position", value=where) from None
 
     def _check_positions(self) -> None:
         for index, absorber in enumerate(self.absorbers):

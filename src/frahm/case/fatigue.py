@@ -53,6 +53,11 @@ class Fatigue(Section):
         title="Band of wind speeds",
         description="Winds whose damage is counted; by default those that shed inside the window of detuning.",
     )
+    position: Annotated[float, Quantity("m", "s", at_least=0)] | None = Field(
+        default=None,
+        title="Position of the detail",
+        description="Along an elastic pipe, counted as its supports are; by default where the stress is largest.",
+    )
     bins: Annotated[int, Count(at_least=4, at_most=2000)] = Field(
         default=40, title="Wind bins", description="Number of classes the band of wind speeds is divided into."
     )

@@ -11,6 +11,7 @@ from frahm.loads.amplitudes import (
     mode_factors,
     sarpkaya_amplitude,
 )
+from frahm.loads.climate import Persistence, WindClimate, persistence, wind_climate
 from frahm.loads.onset import Criterion, onset_criteria, onset_sentence
 from frahm.loads.over_wind import (
     ExcitationOverWind,
@@ -47,11 +48,13 @@ __all__ = [
     "ExcitationOverWind",
     "LockInBand",
     "ModeFactors",
+    "Persistence",
     "ReynoldsCurve",
     "Similarity",
     "VortexShedding",
     "WakeOscillator",
     "WakeState",
+    "WindClimate",
     "WindExcitation",
     "amplitude_estimates",
     "eurocode_amplitude",
@@ -64,6 +67,7 @@ __all__ = [
     "mode_factors",
     "onset_criteria",
     "onset_sentence",
+    "persistence",
     "reduced_velocity",
     "reynolds_number",
     "sarpkaya_amplitude",
@@ -74,5 +78,6 @@ __all__ = [
     "speed_window",
     "strouhal_curve",
     "vortex_shedding",
+    "wind_climate",
     "wind_excitation",
 ]

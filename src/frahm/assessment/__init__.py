@@ -1,0 +1,17 @@
+"""Room `assessment`: stress histories, cycles and fatigue damage over the attractors and the wind climate."""
+
+from frahm.assessment.closed_forms import constant_range_damage, weibull_damage
+from frahm.assessment.damage import FatigueDamage
+from frahm.assessment.fatigue import fatigue_damage
+from frahm.assessment.rainflow_cycles import CONVENTION, Cycles, rainflow_cycles, turning_points
+
+__all__ = [
+    "CONVENTION",
+    "Cycles",
+    "FatigueDamage",
+    "constant_range_damage",
+    "fatigue_damage",
+    "rainflow_cycles",
+    "turning_points",
+    "weibull_damage",
+]

@@ -1,0 +1,100 @@
+"""What speaks against counted damage, and what its reader must know, in sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from frahm.assessment.detail import fatigue_section
+from frahm.assessment.motion_damage import SETTLED
+
+if TYPE_CHECKING:
+    from frahm.assessment.linear_damage import LinearPipe
+    from frahm.assessment.wind_survey import WindFindings, WindSurvey
+
+_COARSE = 0.2  # relative change of the damage between two ways to sum over the bins
+_COUNTS = 1e-2  # share of the largest rate below which a motion that has not settled cannot matter
+_NOTABLE = 1e-4  # damage too small for any design fatigue factor to matter
+
+
+def doubts_of(
+    known: Mapping[str, Any], survey: WindSurvey, bare: LinearPipe | None, linear: LinearPipe | None
+) -> tuple[str, ...]:
+    """What speaks against the numbers."""
+    found = [survey.at[speed] for speed in sorted(survey.at)]
+    doubts = [*_unsettled(found), *_uncounted(found), *_drifting(found)]
+    if known["binning"] > _COARSE:
+        doubts.append(
+            f"The damage with absorbers changes by {known['binning']:.0%} with the way it is summed over the wind bins:"
+            " it needs more of them (fatigue.bins)."
+        )
+    if any(pipe is not None and not pipe.decays for pipe in (bare, linear)):
+        doubts.append("Without damping free motions never die out, and the damage of the linear pipe has no bound.")
+    outside, inside = known["outside_without"], known["damage_with"]
+    if outside > _NOTABLE and outside > 0.05 * inside:
+        doubts.append(
+            f"Winds outside the band do a damage of {outside:.2g} to the pipe without absorbers, which is not counted:"
+            " widen the band (fatigue.wind_speeds, or analysis.detuning)."
+        )
+    return tuple(doubts)
+
+
+def notes_of(known: Mapping[str, Any], survey: WindSurvey) -> tuple[str, ...]:
+    """Limits of what was counted."""
+    fatigue, stay = fatigue_section(survey.case), known["persistence"]
+    notes = [
+        "The damage is that of vortex shedding in the band of wind speeds, at frequencies that follow the wind."
+        " Lock-in can hold the shedding at the natural frequency over the whole band: then the damage would be up to"
+        f" {known['locked_in_with']:.3g} with absorbers and {known['locked_in_without']:.3g} without.",
+        f"The S-N curve {fatigue.curve} is that of DNV-RP-C203 (2016) in air, read in a reproduction of its table;"
+        " reference thicknesses and the formula for Weibull distributed ranges are secondary.",
+        "The steady motion is counted as if it had always built up. By a simple model with an assumed correlation time"
+        f" the wind stays in the band for {stay.mean_stay:.3g} s on average, and {stay.share_built_up:.0%} of the time"
+        f" in it belong to stays with {stay.build_up:.3g} s still to come, which the build-up takes (secondary).",
+    ]
+    if "design_fatigue_factor" not in fatigue.model_fields_set:
+        notes.append("The design fatigue factor was left at 1; rules ask for up to 10 (secondary).")
+    if survey.at:
+        fewest = min(one.found.samples for one in survey.at.values())
+        share = min(one.found.missed_below for one in survey.at.values())
+        notes.append(
+            f"At each wind {fewest} states were sampled: an attractor that less than {share:.2g} of the states lead to"
+            " can have been missed, unless it is one of a neighbouring wind."
+        )
+    return tuple(notes)
+
+
+def _unsettled(found: list[WindFindings]) -> list[str]:
+    winds = [one for one in found if one.unsettled > 0]
+    if not winds:
+        return []
+    share = max(one.unsettled for one in winds)
+    reasons = {a.outcome.value for one in winds for a in one.found if a.kind == "unsettled"}
+    return [f"{_where(winds)} up to {share:.2g} of the sampled motions did not settle: {' '.join(sorted(reasons))}"]
+
+
+def _uncounted(found: list[WindFindings]) -> list[str]:
+    winds = [one for one in found if not len(one.damage) or any(math.isnan(entry.rate) for entry in one.damage)]
+    return [f"{_where(winds)} the damage of a motion could not be counted."] if winds else []
+
+
+def _drifting(found: list[WindFindings]) -> list[str]:
+    top = max((one.worst_rate for one in found if np.isfinite(one.worst_rate)), default=0.0)
+    winds = [one for one in found if any(not e.settled and e.rate > _COUNTS * top for e in one.damage)]
+    if not winds:
+        return []
+    scatter = max(entry.scatter for one in winds for entry in one.damage if entry.rate > _COUNTS * top)
+    return [
+        f"{_where(winds)} the damage per time of a motion that does not repeat still changes by {scatter:.1%} between"
+        f" the halves of its history ({SETTLED:.0%} is allowed)."
+    ]
+
+
+def _where(winds: list[WindFindings]) -> str:
+    speeds = [one.speed for one in winds]
+    if len(speeds) == 1:
+        return f"At a wind of {speeds[0]:.4g} m/s"
+    return f"At {len(speeds)} winds between {min(speeds):.4g} and {max(speeds):.4g} m/s"

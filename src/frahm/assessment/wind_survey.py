@@ -1,0 +1,203 @@
+"""Every lasting motion at each wind speed of a band, and the damage per time it does."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from frahm.arrays import Floats
+from frahm.assessment.detail import Detail
+from frahm.assessment.motion_damage import MotionDamage, largest_place, motion_damage
+from frahm.attractors import Attractor, AttractorSet
+from frahm.attractors.finding import PERIODS, attractors_from, attractors_reached
+from frahm.attractors.regions import default_region
+from frahm.attractors.stroboscope import Stroboscope, stroboscope
+from frahm.case import Case
+from frahm.harmonic_balance import PeriodicResponse, periodic_responses_of
+from frahm.loads import wind_excitation
+from frahm.systems import System, build_system
+
+_ALIKE = 0.02  # of the peak: motions that differ less are one, as in the search for attractors
+_UNLIKE = 0.05  # relative difference of rates above which a neighbour's worst motion is tried, too
+_ROUNDS = 3
+Seen = Callable[[int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class WindFindings:
+    """What there is at one wind speed.
+
+    Attributes
+    ----------
+    speed : float
+        U [m/s].
+    frequency : float
+        Omega(U) [rad/s].
+    system : System
+        With the forcing F(U).
+    responses : tuple of PeriodicResponse
+    found : AttractorSet
+    damage : tuple of MotionDamage
+        Of every attractor, in their order.
+    """
+
+    speed: float
+    frequency: float
+    system: System
+    responses: tuple[PeriodicResponse, ...]
+    found: AttractorSet
+    damage: tuple[MotionDamage, ...]
+
+    @property
+    def worst(self) -> int:
+        """Which attractor does most damage; one that cannot be counted is passed over."""
+        rates = np.array([entry.rate for entry in self.damage])
+        return int(np.nanargmax(rates)) if np.any(~np.isnan(rates)) else 0
+
+    @property
+    def worst_rate(self) -> float:
+        """Largest damage per time of any attractor found, however small its basin [1/s]."""
+        return self.damage[self.worst].rate if self.damage else 0.0
+
+    @property
+    def weighted_rate(self) -> float:
+        """Damage per time weighted by basin fractions [1/s]; what has not settled counts as the worst."""
+        worst, total = self.worst_rate, 0.0
+        for attractor, entry in zip(self.found, self.damage, strict=True):
+            if attractor.basin_fraction > 0:
+                total += attractor.basin_fraction * (worst if attractor.kind == "unsettled" else entry.rate)
+        return total
+
+    @property
+    def unsettled(self) -> float:
+        """Share of the sampled motions that ended on no attractor [-]."""
+        return sum(attractor.basin_fraction for attractor in self.found if attractor.kind == "unsettled")
+
+
+@dataclass(eq=False)
+class WindSurvey:
+    """Findings by wind speed; `look` adds to them.
+
+    Attributes
+    ----------
+    case : Case
+    detail : Detail
+    samples, seed : int
+    workers : int
+        Threads; each takes a wind speed at a time.
+    at : dict of float to WindFindings
+    """
+
+    case: Case
+    detail: Detail
+    samples: int
+    seed: int
+    workers: int | None = None
+    seen: Seen | None = None
+    at: dict[float, WindFindings] = field(default_factory=dict)
+
+    def look(self, speeds: Sequence[float]) -> None:
+        """Find the motions at the speeds not looked at yet [m/s]."""
+        self._all(self._found, [speed for speed in speeds if speed not in self.at])
+
+    def carry(self) -> None:
+        """Start from the worst motion of a neighbour wherever that does more damage.
+
+        A motion with a small basin that the sample missed at one wind is found if the next one has it.
+        """
+        for _ in range(_ROUNDS):
+            before = {speed: found.worst_rate for speed, found in self.at.items()}
+            wanted = [speed for speed in before if len(self._from_neighbours(speed))]
+            self._all(self._carried, wanted)
+            if not any(self.at[speed].worst_rate > rate * (1 + _UNLIKE) for speed, rate in before.items()):
+                break
+
+    def moved_to(self, detail: Detail) -> WindSurvey:
+        """The same motions, their damage counted at another detail."""
+        new = WindSurvey(self.case, detail, self.samples, self.seed, self.workers)
+
+        def counted(found: WindFindings) -> WindFindings:
+            damage = tuple(motion_damage(found.system, attractor, detail) for attractor in found.found)
+            return dataclasses.replace(found, damage=damage)
+
+        with self._pool() as pool:
+            new.at = {found.speed: found for found in pool.map(counted, self.at.values())}
+        return new
+
+    def larger_place(self, sections: Floats, rows: Floats, least: float) -> tuple[float, int] | None:
+        """Section, and its row, where the worst motion of some wind has a range more than `least` times the detail's.
+
+        Winds that do less than a thousandth of the largest damage per time are passed over.
+        """
+        top = max((found.worst_rate for found in self.at.values()), default=0.0)
+        best: tuple[float, float, int] | None = None
+        for found in self.at.values():
+            worst = found.found[found.worst] if len(found.found) else None
+            if worst is None or worst.kind == "unsettled" or not found.worst_rate > 1e-3 * top:
+                continue
+            section, ranges = largest_place(found.system, worst, sections, rows)
+            here = ranges[np.argmin(np.abs(sections - (self.detail.section or 0.0)))]
+            if ranges.max() > least * here and (best is None or found.worst_rate > best[0]):
+                best = (found.worst_rate, section, int(np.argmax(ranges)))
+        return None if best is None else best[1:]
+
+    def _from_neighbours(self, speed: float) -> Floats:
+        """States (k, 2n) of the neighbours' worst motions that do more damage than any of this wind."""
+        ordered = sorted(self.at)
+        place, own = ordered.index(speed), self.at[speed].worst_rate
+        states = [np.zeros((0, 2 * self.at[speed].system.size))]
+        for other in (place - 1, place + 1):
+            found = self.at[ordered[other]] if 0 <= other < len(ordered) else None
+            if found is None or not len(found.found) or not found.worst_rate > own * (1 + _UNLIKE):
+                continue
+            worst: Attractor = found.found[found.worst]
+            if worst.kind != "unsettled":
+                states.append(worst.representative_state[None])
+        return np.concatenate(states)
+
+    def _all(self, find: Callable[[float], WindFindings], speeds: Sequence[float]) -> None:
+        with self._pool() as pool:
+            for found in list(pool.map(find, speeds)):
+                self.at[found.speed] = found
+                if self.seen is not None:
+                    self.seen(len(self.at))
+
+    def _pool(self) -> ThreadPoolExecutor:
+        return ThreadPoolExecutor(self.workers or os.cpu_count() or 1)
+
+    def _found(self, speed: float) -> WindFindings:
+        system = build_system(self.case.with_wind(speed=speed))
+        W = float(wind_excitation(self.case).frequency(speed))
+        responses = tuple(periodic_responses_of(system, W, None))
+        region = default_region(system, W, responses)
+        found = attractors_from(_strobe(system, W), responses, region, self.samples, self.seed, PERIODS, False)
+        damage = tuple(motion_damage(system, attractor, self.detail) for attractor in found)
+        return WindFindings(speed, W, system, responses, found, damage)
+
+    def _carried(self, speed: float) -> WindFindings:
+        here = self.at[speed]
+        strobe = _strobe(here.system, here.frequency)
+        reached = attractors_reached(strobe, here.responses, self._from_neighbours(speed), PERIODS)
+        new = tuple(one for one in reached if not any(_alike(one, known) for known in here.found))
+        damage = tuple(motion_damage(here.system, attractor, self.detail) for attractor in new)
+        found = dataclasses.replace(here.found, attractors=(*here.found.attractors, *new))
+        return dataclasses.replace(here, found=found, damage=(*here.damage, *damage))
+
+
+def _strobe(system: System, frequency: float) -> Stroboscope:
+    """Stroboscope on one thread: every wind speed has its own."""
+    return stroboscope(system, frequency, 1)
+
+
+def _alike(a: Attractor, b: Attractor) -> bool:
+    """Whether peaks and rms of two motions agree within 2 % of the peak."""
+    pipe, stroke = max(a.pipe_peak, b.pipe_peak), max(a.relative_peak, b.relative_peak)
+    return bool(
+        max(abs(a.pipe_peak - b.pipe_peak), abs(a.pipe_rms - b.pipe_rms)) <= _ALIKE * pipe
+        and max(abs(a.relative_peak - b.relative_peak), abs(a.relative_rms - b.relative_rms)) <= _ALIKE * stroke
+    )
