@@ -17,6 +17,7 @@ from frahm.analysis.linear import without_absorber
 from frahm.analysis.long_term import attractors, worst
 from frahm.analysis.manifold import manifold
 from frahm.analysis.margin import detached_curve_margin
+from frahm.analysis.modes import modes
 from frahm.analysis.motions import SAMPLES_PER_PERIOD, motions
 from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
@@ -46,6 +47,7 @@ class Step:
 STEPS = (
     Step("pipe without absorbers", without_absorber),
     Step("exact response by harmonic balance", exact_response),
+    Step("modes of the pipe", modes),
     Step("slow flow", slow_flow_response),
     Step("similarity numbers and onset criteria", wind),
     Step("births and merges of detached curves", detached_curve_margin),

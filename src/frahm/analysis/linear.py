@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from frahm.analysis.curve_summary import summary_of
 from frahm.analysis.section import Section, Work
@@ -39,18 +40,33 @@ def linear_amplitudes(system: System, frequency: Floats) -> Complexes:
 def bare_amplitude(case: Case, frequency: Floats | float) -> Floats:
     """Amplitude of the pipe without absorbers [m] at Omega [rad/s]; infinite at the resonance without damping."""
     bare = build_system(case.without_absorbers())
-    return np.abs(linear_amplitudes(bare, np.atleast_1d(frequency))[:, 0])
+    return _magnitude(linear_amplitudes(bare, np.atleast_1d(frequency)), bare.output)
 
 
 def bare_resonance(case: Case) -> tuple[float, float]:
-    """Largest amplitude of the pipe without absorbers [m] over all frequencies, and its frequency [rad/s]."""
+    """Largest amplitude of the pipe without absorbers [m] at the resonance of its governing mode, and its frequency.
+
+    The other modes of an elastic pipe take part; the frequency [rad/s] is within 1e-9 of the largest amplitude.
+    """
     pipe = case.pipe
     if pipe.damping_ratio == 0:
-        driven = np.any(build_system(case.without_absorbers()).forcing)
+        driven = build_system(case.without_absorbers()).forcing[0]
         return float("inf") if driven else 0.0, pipe.frequency
     inside = 1 - 2 * pipe.damping_ratio**2
     frequency = pipe.frequency * float(np.sqrt(inside)) if inside > 0 else 1e-9 * pipe.frequency
+    if pipe.modal.count > 1:
+        frequency = _summit(case, frequency)
     return float(bare_amplitude(case, frequency)[0]), frequency
+
+
+def _summit(case: Case, frequency: float) -> float:
+    """Frequency of the largest amplitude near the resonance of one mode [rad/s], where others shift it a little."""
+    width = 2 * case.pipe.damping_ratio * case.pipe.frequency
+    found = minimize_scalar(
+        lambda W: -float(bare_amplitude(case, W)[0]), method="bounded", options={"xatol": 1e-9 * frequency},
+        bounds=(max(frequency - width, 1e-9 * frequency), frequency + width),
+    )  # fmt: skip
+    return float(found.x)
 
 
 def without_absorber(work: Work) -> Section:

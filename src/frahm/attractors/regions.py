@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import scipy.linalg
 from scipy.stats import qmc
 
 from frahm.arrays import Floats
@@ -25,7 +26,8 @@ Region = dict[str, tuple[float, float]]
 def lift(system: System) -> tuple[Floats, bool]:
     """Displacements (n, 2) of all coordinates per x1 (output) and z (first element), and whether z is free.
 
-    All other elements are at rest relative to what they hang on; what the elements leave open is as small as it can be.
+    All other elements are at rest relative to what they hang on; what this leaves open is as soft as it can be: a
+    pipe of several modes is bent as by a force where the output is, not in modes a hundred times stiffer.
     """
     rows = [system.output]
     free = False
@@ -33,7 +35,7 @@ def lift(system: System) -> tuple[Floats, bool]:
         if _independent(rows, element.direction):
             rows.append(element.direction)
             free = free or index == 0
-    inverse = np.linalg.pinv(np.array(rows))
+    inverse = _softest(system, np.array(rows))
     columns = inverse[:, :2] if free else np.column_stack([inverse[:, 0], np.zeros(system.size)])
     return columns, free
 
@@ -108,6 +110,23 @@ def sample_region(system: System, region: Region, samples: int, seed: int) -> Fl
     unit = sobol.random(1 << max(samples - 1, 0).bit_length())[:samples]
     lo, hi = (np.array([bounds[side] for bounds in region.values()]) for side in (0, 1))
     return states_of(system, dict(zip(region, (lo + (hi - lo) * unit).T, strict=True)))
+
+
+def _softest(system: System, rows: Floats) -> Floats:
+    """Displacements (n, rows) of every coordinate per value of each row, of least strain energy.
+
+    Kinetic energy at the reference frequency is added, so that what no spring holds stays small too.
+    """
+    if rows.shape[0] == rows.shape[1]:
+        return np.asarray(np.linalg.inv(rows))
+    positive = system.natural_frequencies[system.natural_frequencies > 0]
+    square = float(positive[0]) ** 2 if positive.size else 1.0
+    stiffness = 0.5 * (system.stiffness + system.stiffness.T) + square * system.mass
+    try:
+        spread = scipy.linalg.solve(stiffness, rows.T, assume_a="pos")
+    except np.linalg.LinAlgError:  # a negative stiffness has no softest shape
+        spread = rows.T
+    return np.asarray(spread @ np.linalg.inv(rows @ spread))
 
 
 def _independent(rows: list[Floats], row: Floats) -> bool:
