@@ -26,6 +26,7 @@ _NODES = 9
 _ORDER = 14
 _LANES = 4
 _ADVANCE = 1.2  # fastest motion per step [rad]
+_REACHED = 10.0  # up to this multiple of the frequency a mode does not follow statically
 _TURN = 2.0  # highest harmonic per step [rad]
 _POINTS = 0.5 - 0.5 * np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
 _TO_POWERS = np.linalg.inv(_POINTS[:, None] ** np.arange(_NODES))
@@ -73,7 +74,7 @@ def variation_of(system: System, steepest: float = math.inf, frequency: float = 
 
 
 def _lively(omega: Floats, damping: Floats, coupling: Floats, steepest: float, frequency: float) -> np.ndarray:
-    """Which modes take part in the motion: slow ones, and those the slope's harmonics could excite.
+    """Which modes take part in the motion: those the orbit's harmonics reach, and those the slope's could excite.
 
     Harmonic m of the slope is taken to fall off as 0.3^(m/2 - 1); mode j can be excited in combination with a slow one
     by m = omega_j/Omega - 1 and above, at the rate steepest coupling/(2 omega_j), against half its damping.
@@ -81,7 +82,7 @@ def _lively(omega: Floats, damping: Floats, coupling: Floats, steepest: float, f
     m = np.maximum(omega / frequency - 1.0, 2.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         rate = steepest * 0.3 ** (m / 2 - 1) * coupling / (2 * omega)
-    return np.asarray((omega < 3 * frequency) | ~(rate < 0.1 * damping))
+    return np.asarray((omega < _REACHED * frequency) | ~(rate < 0.1 * damping))
 
 
 def _variation(K: Floats, C: Floats, push: Floats, feel: Floats, flexibility: Floats) -> Variation:

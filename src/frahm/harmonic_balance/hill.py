@@ -43,8 +43,6 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
                         P[a * r + i, b * r + j] += pb.directions[i, e] * pb.directions[j, e] * value
     span = (math.pi if odd else 2.0 * math.pi) / W
     A, D = np.empty((n, n), np.complex128), np.zeros((n, n), np.complex128)
-    S, dS = np.empty((r, r), np.complex128), np.empty((r, r), np.complex128)
-    force, dforce = np.empty(r, np.complex128), np.empty(r, np.complex128)
     for index in range(count):
         if multipliers[index].imag < 0.0:
             if index > 0 and abs(multipliers[index - 1] - multipliers[index].conjugate()) < 1e-6:
@@ -59,15 +57,8 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
             v[i] += 0.3 * math.sin(1.0 + i)
             w[i] += 0.3 * math.cos(1.0 + i)
         good = False
+        _assemble(pb, P, lam, W, step, h, A, D)
         for iteration in range(12):
-            A[:] = P
-            for a in range(harmonics):
-                k = (a * step) - h
-                stiffness(pb, lam + 1j * k * W, S, dS, force, dforce)
-                for i in range(r):
-                    for j in range(r):
-                        A[a * r + i, a * r + j] += S[i, j]
-                        D[a * r + i, a * r + j] = dS[i, j]
             if iteration > 0:
                 bottom = np.sum(w * (D @ v))
                 if bottom == 0j:
@@ -77,16 +68,13 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
                 if abs(change) < 1e-10 * W:  # above what rounding leaves
                     good = True
                     break
-                for a in range(harmonics):
-                    k = (a * step) - h
-                    stiffness(pb, lam + 1j * k * W, S, dS, force, dforce)
-                    for i in range(r):
-                        for j in range(r):
-                            A[a * r + i, a * r + j] = P[a * r + i, a * r + j] + S[i, j]
+                _assemble(pb, P, lam, W, step, h, A, D)
             v = np.linalg.solve(A, D @ v if iteration > 0 else v)
             w = np.linalg.solve(A.T.copy(), D.T @ w if iteration > 0 else w)
             v /= np.max(np.abs(v))
             w /= np.max(np.abs(w))
+        for earlier in range(index):  # one that was found before: multipliers are too close to be told apart from here
+            good = good and abs(cmath.exp(lam * span) - multipliers[earlier]) > 1e-9
         if good and abs(lam - start) < 0.02 * W:
             old = multipliers[index]
             value = cmath.exp(lam * span)
@@ -96,3 +84,18 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
             for other in range(multipliers.size):
                 if old.imag != 0.0 and abs(multipliers[other] - old.conjugate()) < 1e-6:
                     multipliers[other] = value.conjugate()
+
+
+@kernel
+def _assemble(pb, P, lam, W, step, h, A, D):
+    """Hill's matrix A at the exponent lam, and its derivative D, diagonal but for the blocks of one harmonic."""
+    r = pb.M11.shape[0]
+    S, dS = np.empty((r, r), np.complex128), np.empty((r, r), np.complex128)
+    force, dforce = np.empty(r, np.complex128), np.empty(r, np.complex128)
+    A[:] = P
+    for a in range(P.shape[0] // r):
+        stiffness(pb, lam + 1j * ((a * step) - h) * W, S, dS, force, dforce)
+        for i in range(r):
+            for j in range(r):
+                A[a * r + i, a * r + j] += S[i, j]
+                D[a * r + i, a * r + j] = dS[i, j]
