@@ -65,7 +65,7 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
                     break
                 change = np.sum(w * (A @ v)) / bottom
                 lam -= change
-                if abs(change) < 1e-10 * W:  # above what rounding leaves
+                if abs(change) < 1e-6 * W:  # convergence is cubic: the next change would be below rounding
                     good = True
                     break
                 _assemble(pb, P, lam, W, step, h, A, D)
