@@ -47,6 +47,10 @@ _PUBLIC = {
     "WorstCase": "frahm.attractors",
     "fatigue_damage": "frahm.assessment",
     "FatigueDamage": "frahm.assessment",
+    "design_absorber": "frahm.design",
+    "DesignSettings": "frahm.design",
+    "DesignStudy": "frahm.design",
+    "DesignedAbsorber": "frahm.design",
 }
 
 __all__ = ["__version__", *_PUBLIC]

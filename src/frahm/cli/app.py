@@ -8,6 +8,7 @@ import typer
 
 import frahm
 from frahm.cli import cases, run
+from frahm.cli.design import design
 from frahm.cli.guarded import GuardedGroup
 from frahm.cli.reproduce import reproduce
 
@@ -31,6 +32,7 @@ for command in (
     run.report,
     run.show,
     run.warmup,
+    design,
     reproduce,
 ):
     app.command()(command)

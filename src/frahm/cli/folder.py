@@ -12,7 +12,7 @@ from frahm.errors import ParameterError
 if TYPE_CHECKING:
     from frahm.case import Case
 
-_OWN_FILES = ("summary.json", "report.html", "results.nc")
+_OWN_FILES = ("summary.json", "report.html", "results.nc", "best.yaml")
 
 
 def default_folder(case: Case) -> Path:
@@ -78,7 +78,9 @@ def _forget(folder: Path) -> None:
     """Remove the results of another case, so that they are never taken for those of this one."""
     own = [folder / name for name in _OWN_FILES]
     own += [
-        path for pattern in ("response-*", "motion-*", "slow-manifold.*") for path in folder.glob(f"figures/{pattern}")
+        path
+        for pattern in ("response-*", "motion-*", "slow-manifold.*", "design-*")
+        for path in folder.glob(f"figures/{pattern}")
     ]
     for path in own:
         try:

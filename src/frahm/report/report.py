@@ -78,7 +78,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         views=views[:_MOST_MOTIONS],
         more_motions=max(0, len(views) - _MOST_MOTIONS),
         plots=plots,
-        images={name: _address(svg) for name, svg in images.items() if name in plots},
+        images={name: image_address(svg) for name, svg in images.items() if name in plots},
         plotly_js=Markup(plotly.offline.get_plotlyjs()),
         plotly_config=CONFIG,
     )
@@ -111,7 +111,7 @@ def _inside_script(figure: go.Figure) -> str:
     return str(figure.to_json()).replace("<", "\\u003c")
 
 
-def _address(svg: str) -> str:
+def image_address(svg: str) -> str:
     """The drawing as data address, coordinates to a tenth of a point: no reader sees more, and it is half as long."""
     short = _PATH.sub(lambda path: _LONG_COORDINATE.sub(r"\1", path[0]), svg)
     return "data:image/svg+xml;base64," + base64.b64encode(short.encode()).decode()

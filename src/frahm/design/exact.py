@@ -1,0 +1,146 @@
+"""Tier 2: one design by the exact equations, over all frequency errors, with the force given and with more of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from frahm.response import ResponseCurve, frequency_response
+from frahm.systems import System, with_parameters
+
+_STEPS = 9
+_FINE = 1e-3
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Where the response counts and where detached curves are looked for, as Omega [rad/s] of the undisturbed pipe.
+
+    Attributes
+    ----------
+    window, wide : tuple of float
+        Both move with the frequency of the pipe if `moving`, the wide one always does.
+    """
+
+    window: tuple[float, float]
+    wide: tuple[float, float]
+    moving: bool
+
+    def at(self, error: float) -> tuple[tuple[float, float], tuple[float, float]]:
+        """Window of the response, and the one in which the complete curve is followed."""
+        scale = error if self.moving else 1.0
+        lo, hi = self.window[0] * scale, self.window[1] * scale
+        return (lo, hi), (min(lo, self.wide[0] * error), max(hi, self.wide[1] * error))
+
+
+@dataclass(frozen=True)
+class ExactJudgement:
+    """What the exact periodic responses of a design come to.
+
+    Attributes
+    ----------
+    pipe_peak, relative_peak : float
+        Largest over all branches, frequencies and frequency errors [m].
+    error, frequency : float
+        Where the pipe peak occurs.
+    growth_rate : float
+        Largest growth rate of a disturbance [1/s], saddles of multivalued responses left out.
+    detached : bool
+        Whether there is a detached curve.
+    unverified : tuple of str
+    """
+
+    pipe_peak: float
+    relative_peak: float
+    error: float
+    frequency: float
+    growth_rate: float
+    detached: bool
+    unverified: tuple[str, ...]
+
+    @property
+    def stable(self) -> bool:
+        """Whether every response outside the saddles is stable."""
+        return self.growth_rate < 0
+
+
+def disturbed(system: System, error: float = 1.0, force: float = 1.0) -> System:
+    """The system with the pipe's frequency off by a factor, the lift in proportion to its square, times `force`."""
+    if error == 1.0 and force == 1.0:
+        return system
+    return with_parameters(system, pipe_frequency=error * system.reference_frequency, force=error**2 * force)
+
+
+def exact_judgement(system: System, windows: Windows, errors: Sequence[float], force: float = 1.0) -> ExactJudgement:
+    """All periodic responses of a design under all frequency errors."""
+    worst, stroke, at, growth, detached = -1.0, 0.0, (1.0, math.nan), -math.inf, False
+    doubts: list[str] = []
+    for error in errors:
+        window, wide = windows.at(error)
+        curve = frequency_response(disturbed(system, error, force), frequency=wide)
+        inside = (curve.frequency >= window[0]) & (curve.frequency <= window[1])
+        peak = np.where(inside, curve.pipe_peak, -1.0)
+        index = int(np.argmax(peak))
+        if peak[index] > worst:
+            worst, at = float(peak[index]), (float(error), float(curve.frequency[index]))
+        stroke = max(stroke, float(np.max(np.where(inside, curve.relative_peak, 0.0))))
+        growth = max(growth, _growth(curve, inside))
+        detached = detached or has_detached(curve)
+        doubts += curve.unverified
+    return ExactJudgement(worst, stroke, *at, growth, detached, tuple(dict.fromkeys(doubts)))
+
+
+def has_detached(curve: ResponseCurve) -> bool:
+    """Whether a curve has a detached branch (of its own symmetry)."""
+    return any(detached and not odd for detached, odd in zip(curve.detached, curve.asymmetric, strict=True))
+
+
+def exact_birth(
+    system: System, windows: Windows, errors: Sequence[float], guess: float, most: float
+) -> tuple[float, float]:
+    """Largest factor on the force known to be without, and least known to be with a detached curve, around a guess.
+
+    Bisected to a thousandth; (most, inf) if none is met up to `most`. Starts from the guess, so that a detached curve
+    that ends again at more force is not stepped over if the guess is near its birth.
+    """
+
+    def detached(force: float) -> bool:
+        return any(
+            has_detached(frequency_response(disturbed(system, error, force), frequency=windows.at(error)[1]))
+            for error in errors
+        )
+
+    step, free, taken = 0.02, math.nan, math.nan
+    force = min(max(guess, 0.5), most)
+    for _ in range(_STEPS):
+        if detached(force):
+            taken = force
+            if not math.isnan(free):
+                break
+            force = max(force - step, 0.3)
+        else:
+            free = force
+            if not math.isnan(taken) or force >= most:
+                break
+            force = min(force + step, most)
+        step *= 2
+    if math.isnan(taken):
+        return free, math.inf
+    if math.isnan(free):
+        return 0.0, taken
+    while taken - free > _FINE:
+        middle = 0.5 * (free + taken)
+        free, taken = (free, middle) if detached(middle) else (middle, taken)
+    return free, taken
+
+
+def _growth(curve: ResponseCurve, inside: np.ndarray) -> float:
+    """Largest growth rate [1/s] in the window, where no saddle-node alone makes the response unstable."""
+    kinds = {point.kind for point in curve.special_points}
+    counts = inside & np.isfinite(curve.growth_rate)
+    if kinds <= {"saddle-node"} and np.any(curve.stable[counts]):
+        counts &= curve.stable
+    return float(np.max(curve.growth_rate[counts], initial=-math.inf))

@@ -1,0 +1,136 @@
+"""Finalists: designs that are best by the closed form once it is corrected by the exact equations.
+
+The closed form of one harmonic misses the true optimum by a few per cent, and the optimum lies where a detached curve
+is born: a limit, not a hill. So the closed form is searched again with the birth, the stability and the peak shifted by
+what the exact equations say at the last design, until both agree (space mapping).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from frahm.arrays import Floats
+from frahm.design.absorber import DesignedAbsorber
+from frahm.design.exact import ExactJudgement, Windows, exact_birth, exact_judgement
+from frahm.design.search import Corrections, Limits, TierOne, predicted_peaks
+from frahm.systems import System
+
+_ROUNDS = 6
+_SETTLED = 1e-3  # relative change of the exact peak that ends the rounds
+_SHORT = 1.5e-3  # by which an exact birth may fall short of the margin while the rounds go on
+_LEAST_DECAY = 4.5e-3  # per period: slower motions do not settle within the periods of the attractor search
+_MISSED = 2e-3  # of the force: a detached curve so near its birth may be too small to be met
+_FAR = 1.1  # of the margin: how far a birth is looked for
+
+
+@dataclass(frozen=True)
+class Finalist:
+    """A design with what the exact periodic responses say of it.
+
+    Attributes
+    ----------
+    design : DesignedAbsorber
+    predicted : float
+        Worst pipe peak expected of all attractors [m].
+    exact : ExactJudgement
+    force_margin : float
+        Largest factor on the force up to which no detached curve was met [-].
+    open_ended : bool
+        Whether no birth was met at all.
+    """
+
+    design: DesignedAbsorber
+    predicted: float
+    exact: ExactJudgement
+    force_margin: float
+    open_ended: bool
+
+    @property
+    def clearly_stable(self) -> bool:
+        """Whether disturbances die out fast enough for every motion to settle."""
+        return self.exact.growth_rate < 0
+
+
+def finalists(
+    tier: TierOne,
+    system_of: Callable[[DesignedAbsorber], System],
+    windows: Windows,
+    errors: Sequence[float],
+    limits: Limits,
+    report: Callable[[Finalist], None] = lambda finalist: None,
+) -> tuple[list[Finalist], list[str]]:
+    """Designs that keep the limits by the exact equations, best first, and why others were discarded."""
+    kept: list[Finalist] = []
+    discarded: list[str] = []
+    decay = _LEAST_DECAY * tier.screening.host.frequency / (2 * math.pi)
+    corrections = Corrections()
+    for stable in (True, False):
+        goal = dataclasses.replace(limits, stable=stable)
+        kept.sort(key=lambda finalist: finalist.predicted)
+        corrections = dataclasses.replace(corrections, damping=decay if stable else -math.inf)
+        last = math.inf
+        for _ in range(_ROUNDS):
+            found = tier.best(goal, corrections)
+            if found is None or (not stable and kept and found[1] >= kept[0].predicted):
+                break
+            row, _ = found
+            judged = tier.judge(row[None])
+            finalist, birth = _judged(tier, row, judged, system_of, windows, errors, limits, corrections)
+            short = limits.force_margin - finalist.force_margin
+            lazy = stable and finalist.exact.growth_rate > -0.5 * decay
+            wide = finalist.exact.relative_peak > limits.stroke * 1.0005
+            if short <= 0 and not lazy and not wide and not finalist.exact.detached:
+                kept.append(finalist)
+                report(finalist)
+            elif abs(finalist.predicted - last) < _SETTLED * last and short > _SHORT:
+                discarded.append(_reason(finalist, limits))
+            if kept and abs(finalist.predicted - last) < _SETTLED * last and short <= 0:
+                break
+            last = finalist.predicted
+            corrections = _corrected(corrections, judged[0], finalist, birth, decay if stable else -math.inf)
+    return sorted(kept, key=lambda finalist: finalist.predicted), list(dict.fromkeys(discarded))
+
+
+def _judged(
+    tier: TierOne, row: Floats, judged: Floats, system_of: Callable[[DesignedAbsorber], System], windows: Windows,
+    errors: Sequence[float], limits: Limits, corrections: Corrections,
+) -> tuple[Finalist, float]:  # fmt: skip
+    """The finalist, and the birth factor between what is known to be free and what is known not to be."""
+    design = tier.space.absorber(row)
+    system = system_of(design)
+    exact = exact_judgement(system, windows, errors)
+    free, taken = math.inf, math.inf
+    if row[2]:
+        guess = judged[0, 3] * corrections.birth
+        most = _FAR * limits.force_margin
+        free, taken = exact_birth(system, windows, errors, guess if math.isfinite(guess) else most, most)
+    as_exact = np.array([[exact.pipe_peak, 0.0, exact.growth_rate, math.inf, judged[0, 4]]])
+    predicted = float(predicted_peaks(as_exact, Limits(1.0, math.inf, False), Corrections())[0])
+    known = free if math.isinf(taken) else free - _MISSED
+    return Finalist(design, predicted, exact, known, math.isinf(taken)), 0.5 * (free + taken)
+
+
+def _corrected(old: Corrections, judged: Floats, finalist: Finalist, birth: float, decay: float) -> Corrections:
+    """Corrections that make the closed form agree with the exact equations at this design."""
+    exact = finalist.exact
+    known = math.isfinite(judged[3]) and not finalist.open_ended
+    offset = exact.growth_rate - judged[2]
+    return Corrections(
+        peak=exact.pipe_peak / judged[0],
+        stroke=exact.relative_peak / judged[1],
+        birth=(birth - 1.5 * _MISSED) / judged[3] if known else old.birth,
+        damping=decay + offset if math.isfinite(decay) and math.isfinite(offset) else old.damping,
+    )
+
+
+def _reason(finalist: Finalist, limits: Limits) -> str:
+    d = finalist.design
+    return (
+        f"kappa {d.kappa:.5g}, linear {d.linear:.4g}, xi2 {d.xi2:.4g}: the exact equations have a detached curve at"
+        f" {finalist.force_margin:.4g} times the force, short of {limits.force_margin:g}."
+    )

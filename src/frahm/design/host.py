@@ -1,0 +1,183 @@
+"""The structure an absorber hangs on, as it is felt at the absorber: receptances over frequency and frequency error.
+
+With D(Omega) of the structure without the absorber, f the forcing, n the row that gives the displacement at the
+absorber and o the row that gives the displacement reported::
+
+    at the absorber   u = u_F + a g,    a = n D^-1 n,   u_F = n D^-1 f
+    at the output     x = x_F + b g,    b = o D^-1 n,   x_F = o D^-1 f
+
+where g is the force of the absorber on the structure. This is exact for any number of modes.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from frahm.arrays import Complexes, Floats
+from frahm.errors import ParameterError
+from frahm.systems import System
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """Excitations a design is judged under: rows are frequency errors of the pipe, columns excitation frequencies.
+
+    Attributes
+    ----------
+    errors : ndarray, shape (R,)
+        r: natural frequency of the pipe over the one it was designed for [-].
+    frequency : ndarray, shape (R, W)
+        Omega [rad/s], ascending in a row.
+    a, u, b, x : ndarray of complex, shape (R, W)
+        Receptances and free displacements, see above [m/N, m].
+    """
+
+    errors: Floats
+    frequency: Floats
+    a: Complexes
+    u: Complexes
+    b: Complexes
+    x: Complexes
+
+
+@dataclass(frozen=True, eq=False)
+class Host:
+    """A system without its first element and the mass that hangs on it.
+
+    Attributes
+    ----------
+    mass, damping, stiffness : ndarray, shape (n, n)
+    forcing, attachment, output : ndarray, shape (n,)
+    frequency : float
+        Reference frequency omega [rad/s].
+    """
+
+    mass: Floats
+    damping: Floats
+    stiffness: Floats
+    forcing: Floats
+    attachment: Floats
+    output: Floats
+    frequency: float
+
+    @functools.cached_property
+    def modal_mass(self) -> float:
+        """Mass of the governing mode as felt at the absorber [kg]: 1/(n phi)^2 with phi of unit modal mass."""
+        phi = self._governing_mode
+        return float(1.0 / (self.attachment @ phi) ** 2)
+
+    @functools.cached_property
+    def modal_damping(self) -> float:
+        """Damping coefficient over mass of the governing mode, 2 zeta omega [1/s]."""
+        phi = self._governing_mode
+        return float(phi @ self.damping @ phi)
+
+    @functools.cached_property
+    def blocked_force(self) -> float:
+        """Force of the governing mode as felt at the absorber [N]."""
+        phi = self._governing_mode
+        return float(abs(phi @ self.forcing / (self.attachment @ phi)))
+
+    @functools.cached_property
+    def output_ratio(self) -> float:
+        """Displacement of the governing mode at the output over that at the absorber [-]."""
+        phi = self._governing_mode
+        return float(abs(self.output @ phi / (self.attachment @ phi)))
+
+    @functools.cached_property
+    def _governing_mode(self) -> Floats:
+        """The mode whose natural frequency is nearest the reference frequency, of unit modal mass."""
+        import scipy.linalg
+
+        squares, modes = scipy.linalg.eigh(self.stiffness, self.mass)
+        frequencies = np.sqrt(np.maximum(squares, 0.0))
+        index = int(np.argmin(np.abs(frequencies - self.frequency)))
+        if abs(self.attachment @ modes[:, index]) < 1e-9 * np.max(np.abs(modes[:, index])):
+            raise ParameterError("absorbers[0]", "at a node", "a place where the governing mode moves")
+        return np.asarray(modes[:, index])
+
+    def conditions(
+        self, errors: Sequence[float], window: tuple[float, float], count: int, *, moving: bool = True
+    ) -> Conditions:
+        """Conditions over a window of Omega [rad/s], `count` frequencies denser around the resonance.
+
+        With `moving` the window moves with the frequency of the pipe.
+        """
+        factors = np.asarray(errors, dtype=float)
+        grid = [_dense_grid(*_moved(window, r, moving), self.frequency * r, count) for r in factors]
+        tables = zip(*(self.receptances(row, float(r)) for row, r in zip(grid, factors, strict=True)), strict=True)
+        return Conditions(factors, np.array(grid), *(np.array(table) for table in tables))
+
+    def receptances(self, frequency: Floats, error: float = 1.0) -> tuple[Complexes, Complexes, Complexes, Complexes]:
+        """a, u_F, b, x_F at frequencies (W,) of a pipe whose natural frequency is off by a factor.
+
+        The damping ratio is kept, and the force is that of lock-in, in proportion to the squared frequency.
+        """
+        W = np.asarray(frequency)[:, None, None]
+        D = error**2 * self.stiffness + 1j * W * error * self.damping - W**2 * self.mass
+        force = error**2 * self.forcing
+        sides = np.linalg.solve(D, np.broadcast_to(np.column_stack([self.attachment, force]), (len(W), len(force), 2)))
+        at = np.asarray(self.attachment @ sides, dtype=complex)
+        out = np.asarray(self.output @ sides, dtype=complex)
+        return at[:, 0], at[:, 1], out[:, 0], out[:, 1]
+
+
+def host_of(system: System) -> Host:
+    """The structure that carries the first element of a system.
+
+    Raises
+    ------
+    ParameterError
+        If the first element carries no mass of its own, or other elements are nonlinear.
+    """
+    if not system.elements:
+        raise ParameterError("absorbers", 0, "a system with an absorber to be designed")
+    direction = system.elements[0].direction
+    own = _own_coordinate(system, direction)
+    stiffness, damping = np.array(system.stiffness), np.array(system.damping)
+    for index, element in enumerate(system.elements[1:], start=1):
+        if not element.law.is_linear:
+            hint = "One absorber is designed at a time; others of the case may have linear springs."
+            raise ParameterError(f"absorbers[{index}].law", "nonlinear", "a linear spring", hint=hint)
+        n = element.direction
+        stiffness += element.law.coefficients[0] * np.outer(n, n)
+        damping += element.law.damping * np.outer(n, n)
+    rest = np.arange(system.size) != own
+    keep = np.ix_(rest, rest)
+    return Host(
+        mass=np.array(system.mass[keep]),
+        damping=damping[keep],
+        stiffness=stiffness[keep],
+        forcing=np.array(system.forcing[rest]),
+        attachment=-direction[rest] / direction[own],
+        output=np.array(system.output[rest]),
+        frequency=system.reference_frequency,
+    )
+
+
+def _own_coordinate(system: System, direction: Floats) -> int:
+    """Coordinate of the element's own mass, coupled to nothing else."""
+    for index in reversed(range(system.size)):
+        coupled = np.count_nonzero(system.mass[index]) > 1 or np.any(system.stiffness[index])
+        others = any(element.direction[index] for element in system.elements[1:])
+        if direction[index] and not coupled and not others and not system.forcing[index]:
+            return index
+    raise ParameterError("absorbers[0]", "no mass of its own", "an absorber with a mass that hangs on nothing else")
+
+
+def _moved(window: tuple[float, float], error: float, moving: bool) -> tuple[float, float]:
+    scale = error if moving else 1.0
+    return window[0] * scale, window[1] * scale
+
+
+def _dense_grid(lo: float, hi: float, middle: float, count: int) -> Floats:
+    """Ascending frequencies from lo to hi, denser around the middle."""
+    width = 0.12 * middle
+    start, end = np.arcsinh((lo - middle) / width), np.arcsinh((hi - middle) / width)
+    grid = middle + width * np.sinh(np.linspace(start, end, count))
+    grid[0], grid[-1] = lo, hi
+    return np.asarray(grid)

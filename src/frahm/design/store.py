@@ -1,0 +1,60 @@
+"""A design study on disk: summary.json, results.nc and best.yaml, each complete or not there at all."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+from frahm.design.study import DesignStudy
+from frahm.files import write_text, written_beside
+
+SCHEMA = "frahm-design-1"
+BEST_FILE = "best.yaml"
+
+
+def save_design(study: DesignStudy, folder: str | Path) -> list[Path]:
+    """Write the three files into an existing folder and return their paths.
+
+    Raises
+    ------
+    ParameterError
+        If a file cannot be written.
+    """
+    folder = Path(folder)
+    study.best_case.to_yaml(folder / BEST_FILE)
+    with written_beside(folder / "results.nc") as temporary:
+        study.to_dataset().to_netcdf(temporary, engine="h5netcdf")
+    text = json.dumps(design_summary(study), indent=2, allow_nan=False, ensure_ascii=False)
+    write_text(folder / "summary.json", text + "\n")
+    return [folder / name for name in ("summary.json", "results.nc", BEST_FILE)]
+
+
+def design_summary(study: DesignStudy) -> dict[str, Any]:
+    """Everything as plain data for strict JSON; numbers that are not finite become None."""
+    return {
+        "schema": SCHEMA,
+        "frahm": study.version,
+        "case": study.case.to_dict(),
+        "results": {"design": _plain(study.results())},
+        "checks": [
+            {
+                "name": f"Worst case of {rival.name} over all attractors",
+                "status": "pass" if rival.verified else "unverified",
+                "detail": f"{rival.worst_pipe_peak:.6g} m by {rival.tier}, {rival.samples} states per frequency",
+            }
+            for rival in study.comparison
+        ],
+        "unverified": list(study.unverified),
+    }
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {str(key): _plain(entry) for key, entry in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

@@ -1,0 +1,203 @@
+"""What a design came to: the chosen absorber, its rivals, and what every number rests on."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from frahm.arrays import labelled
+from frahm.design.absorber import DesignedAbsorber
+from frahm.design.settings import DesignSettings
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from frahm.case import Case
+
+NAMES = ("none", "case", "sink", "tuned mass damper", "mixed")
+
+
+@dataclass(frozen=True)
+class Rival:
+    """One device of the comparison.
+
+    Attributes
+    ----------
+    name : str
+        One of `NAMES`.
+    design : DesignedAbsorber or None
+        Its parameters; None for no absorber, or for one of the case that is not of the family.
+    worst_pipe_peak, relative_peak : float
+        Largest over all attractors, frequencies and frequency errors [m].
+    error, frequency : float
+        Frequency of the pipe over its nominal one [-], and Omega [rad/s], where the pipe peak occurs.
+    kind : str
+        Of the motion that causes it.
+    force_margin : float
+        Largest factor on the force up to which no detached curve was met [-]; infinite where none can be, NaN if
+        not searched.
+    verified : bool
+        Whether nothing speaks against the worst pipe peak.
+    tier : str
+        What the worst pipe peak rests on.
+    samples : int
+        Initial states per frequency behind it.
+    unverified : tuple of str
+    """
+
+    name: str
+    design: DesignedAbsorber | None
+    worst_pipe_peak: float
+    relative_peak: float
+    error: float
+    frequency: float
+    kind: str
+    force_margin: float
+    verified: bool
+    tier: str
+    samples: int
+    unverified: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MarginPoint:
+    """The best design under one force margin: `worst_pipe_peak` [m] by the tier named."""
+
+    force_margin: float
+    design: DesignedAbsorber
+    worst_pipe_peak: float
+    verified: bool
+    tier: str
+
+
+@dataclass(frozen=True, eq=False)
+class DesignStudy:
+    """Result of `design_absorber`.
+
+    Attributes
+    ----------
+    case : Case
+        What was designed for.
+    settings : DesignSettings
+    best : Rival
+        The chosen design, of the family asked for.
+    best_case : Case
+        The case with it, ready to run.
+    comparison : tuple of Rival
+    errors : tuple of float
+        Frequencies of the pipe over the nominal one, of `error_table` [-].
+    error_table : dict of str to tuple of float
+        Largest pipe peak [m] of every device at every frequency error, not retuned.
+    error_verified : dict of str to tuple of bool
+    trade_off : tuple of MarginPoint
+        Worst peak against force margin.
+    with_margin : float
+        Worst pipe peak [m] of the best design with `force_margin` times the force; NaN if not searched.
+    screened : int
+        Designs judged by the closed form.
+    discarded : tuple of str
+        Finalists that failed, with the reason.
+    verdict : str
+    unverified : tuple of str
+    interrupted : bool
+    version : str
+    """
+
+    case: Case
+    settings: DesignSettings
+    best: Rival
+    best_case: Case
+    comparison: tuple[Rival, ...]
+    errors: tuple[float, ...]
+    error_table: dict[str, tuple[float, ...]]
+    error_verified: dict[str, tuple[bool, ...]]
+    trade_off: tuple[MarginPoint, ...]
+    with_margin: float
+    screened: int
+    discarded: tuple[str, ...]
+    verdict: str
+    unverified: tuple[str, ...]
+    interrupted: bool
+    version: str
+
+    @property
+    def verified(self) -> bool:
+        """Whether nothing in the study is in doubt."""
+        return not self.unverified and not self.interrupted
+
+    def results(self) -> dict[str, Any]:
+        """Plain data for the summary, in SI units."""
+        return {
+            "family": self.settings.family,
+            "settings": {name: getattr(self.settings, name) for name in self.settings.__dataclass_fields__},
+            "best": rival_row(self.best),
+            "with_margin": {"force": self.settings.force_margin, "pipe_peak": self.with_margin},
+            "comparison": [rival_row(rival) for rival in self.comparison],
+            "frequency_errors": {
+                "error": [error - 1.0 for error in self.errors],
+                "pipe_peak": {name: list(values) for name, values in self.error_table.items()},
+                "verified": {name: list(values) for name, values in self.error_verified.items()},
+            },
+            "trade_off": [
+                {"force_margin": p.force_margin, **_parameters(p.design), "worst_pipe_peak": p.worst_pipe_peak,
+                 "verified": p.verified, "tier": p.tier}
+                for p in self.trade_off
+            ],
+            "screened": self.screened,
+            "discarded": list(self.discarded),
+            "verdict": self.verdict,
+            "interrupted": self.interrupted,
+        }  # fmt: skip
+
+    def to_dataset(self) -> xr.Dataset:
+        """Comparison, table over frequency errors and trade-off as arrays."""
+        import xarray as xr
+
+        devices = list(self.error_table)
+        table = np.array([self.error_table[name] for name in devices]).reshape(len(devices), len(self.errors))
+        sure = np.array([self.error_verified[name] for name in devices], dtype=bool).reshape(table.shape)
+        curve, rivals = self.trade_off, self.comparison
+        peak, margin = "largest pipe peak over all attractors", "factor on the force without detached curve"
+        variables = {
+            "error": labelled("error_index", [e - 1.0 for e in self.errors], "error of the pipe's frequency", "1"),
+            "error_pipe_peak": labelled(("device", "error_index"), table, peak, "m", names=", ".join(devices)),
+            "error_verified": labelled(("device", "error_index"), sure, "verified", "1"),
+            "comparison_pipe_peak": labelled(
+                "rival", [r.worst_pipe_peak for r in rivals], peak, "m", names=", ".join(r.name for r in rivals)
+            ),
+            "comparison_relative_peak": labelled("rival", [r.relative_peak for r in rivals], "largest stroke", "m"),
+            "comparison_verified": labelled("rival", [r.verified for r in rivals], "verified", "1"),
+            "force_margin": labelled("margin_index", [p.force_margin for p in curve], margin, "1"),
+            "margin_pipe_peak": labelled("margin_index", [p.worst_pipe_peak for p in curve], peak, "m"),
+        }
+        for name, unit in (("rho2", "1"), ("linear", "1/s^2"), ("kappa", "1/(m^2 s^2)"), ("xi2", "1/s")):
+            values = [math.nan if r.design is None else getattr(r.design, name) for r in rivals]
+            variables[f"comparison_{name}"] = labelled("rival", values, f"{name} over mass of the pipe", unit)
+            values = [getattr(p.design, name) for p in curve]
+            variables[f"margin_{name}"] = labelled("margin_index", values, f"{name} over mass of the pipe", unit)
+        return xr.Dataset(variables, attrs={"frahm": self.version, "case": self.case.name, "verdict": self.verdict})
+
+
+def rival_row(rival: Rival) -> dict[str, Any]:
+    """One device as plain data."""
+    return {
+        "name": rival.name,
+        **(_parameters(rival.design) if rival.design else {}),
+        "worst_pipe_peak": rival.worst_pipe_peak,
+        "relative_peak": rival.relative_peak,
+        "frequency_error": rival.error - 1.0,
+        "frequency": rival.frequency,
+        "kind": rival.kind,
+        "force_margin": rival.force_margin,
+        "verified": rival.verified,
+        "tier": rival.tier,
+        "samples": rival.samples,
+        "unverified": list(rival.unverified),
+    }
+
+
+def _parameters(design: DesignedAbsorber) -> dict[str, float]:
+    return {"rho2": design.rho2, "linear": design.linear, "kappa": design.kappa, "xi2": design.xi2}

@@ -1,0 +1,94 @@
+"""Figures of a design: the devices compared, over errors of the pipe's frequency, and what a force margin costs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from frahm.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, VERMILLION, figure_style, new_figure, save_figure
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_LOOKS = {
+    "none": (GREY, ":", "s"),
+    "case": (ORANGE, "--", "v"),
+    "sink": (VERMILLION, "-", "o"),
+    "tuned mass damper": (BLUE, "-.", "^"),
+    "mixed": (GREEN, (0, (5, 1.5)), "D"),
+}
+_LABELS = {"none": "no absorber", "case": "the case's own", "mixed": "linear and cubic"}
+
+
+def save_design_figures(data: xr.Dataset, folder: str | Path) -> list[Path]:
+    """Draw what the dataset of a design study holds into an existing folder, as PNG and SVG; return the paths."""
+    paths = []
+    with figure_style():
+        paths += save_figure(comparison_figure(data), Path(folder) / "design-comparison")
+        if data.sizes["device"]:
+            paths += save_figure(frequency_error_figure(data), Path(folder) / "design-frequency-errors")
+        if data.sizes["margin_index"]:
+            paths += save_figure(margin_figure(data), Path(folder) / "design-margin")
+    return paths
+
+
+def comparison_figure(data: xr.Dataset) -> Figure:
+    """Worst pipe peak of every device as bars; what is unverified is hatched."""
+    names = data["comparison_pipe_peak"].attrs["names"].split(", ")
+    peaks, sure = data["comparison_pipe_peak"].values, data["comparison_verified"].values.astype(bool)
+    figure = new_figure(160, 22 + 11 * len(names))
+    axes = figure.subplots()
+    for row, (name, peak, verified) in enumerate(zip(names, peaks, sure, strict=True)):
+        color = _LOOKS[name][0]
+        axes.barh(row, peak, color=color if verified else "white", edgecolor=color, hatch=None if verified else "///")
+        words = f"{peak:#.3g} m" + ("" if verified else ", unverified")
+        axes.annotate(words, (peak, row), (4, 0), textcoords="offset points", va="center", color=INK)
+    axes.set(xlim=(0, 1.2 * np.max(peaks)), xlabel="worst pipe peak of all attractors [m]")
+    axes.set_yticks(range(len(names)), [_LABELS.get(name, name) for name in names])
+    axes.invert_yaxis()
+    axes.grid(visible=False, axis="y")
+    return figure
+
+
+def frequency_error_figure(data: xr.Dataset) -> Figure:
+    """Worst pipe peak of every device over the error of the pipe's frequency; open marks are unverified."""
+    names = data["error_pipe_peak"].attrs["names"].split(", ")
+    errors = 100 * data["error"].values
+    figure = new_figure(160, 100)
+    axes = figure.subplots()
+    for name, peaks, sure in zip(names, data["error_pipe_peak"].values, data["error_verified"].values, strict=True):
+        color, style, marker = _LOOKS[name]
+        axes.plot(errors, peaks, color=color, linestyle=style, label=_LABELS.get(name, name))
+        for error, peak, verified in zip(errors, peaks, sure, strict=True):
+            axes.plot(error, peak, marker, color=color, markersize=5, markerfacecolor=color if verified else "white")
+    axes.set_yscale("log")
+    axes.set(xlabel="error of the pipe's natural frequency [%], devices not retuned", ylabel="worst pipe peak [m]")
+    figure.legend(loc="outside lower center", ncols=3)
+    return figure
+
+
+def margin_figure(data: xr.Dataset) -> Figure:
+    """Worst pipe peak of the best design under every force margin."""
+    margin, peaks = data["force_margin"].values, data["margin_pipe_peak"].values
+    figure = new_figure(160, 85)
+    axes = figure.subplots()
+    axes.plot(margin, peaks, "-o", color=VERMILLION, markersize=5)
+    columns = (data[f"margin_{name}"].values for name in ("linear", "kappa", "xi2"))
+    for x, y, linear, kappa, xi2 in zip(margin, peaks, *columns, strict=True):
+        words = ([f"k₁ {linear:.3f}"] if linear else []) + [f"κ {kappa:.0f}", f"ξ₂ {xi2:.3f}"]
+        look: dict[str, Any] = {
+            "textcoords": "offset points",
+            "va": "top",
+            "ha": "center",
+            "fontsize": 7.5,
+            "color": GREY,
+        }
+        axes.annotate("\n".join(words), (x, y), (0, -9), **look)
+    spread = float(np.ptp(peaks)) or 0.1 * float(peaks[0])
+    axes.set_ylim(float(np.min(peaks)) - 0.45 * spread, float(np.max(peaks)) + 0.15 * spread)
+    axes.margins(x=0.12)
+    axes.set(xlabel="force up to which no detached curve exists, over the force given", ylabel="worst pipe peak [m]")
+    return figure

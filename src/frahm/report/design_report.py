@@ -1,0 +1,91 @@
+"""The report of a design study: one HTML file that needs no network."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from frahm.design import DesignStudy, Rival
+from frahm.errors import ParameterError
+from frahm.files import write_text
+from frahm.plotting.design_figures import save_design_figures
+from frahm.report.report import REPORT_FILE, image_address
+from frahm.report.tables import number
+
+_NAMES = {"none": "no absorber", "case": "the case's own", "mixed": "linear and cubic"}
+
+
+def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
+    """Draw the figures into `folder`/figures and write the report beside them; return the path of the report.
+
+    Raises
+    ------
+    ParameterError
+        If a file cannot be written.
+    """
+    figures, path = Path(folder) / "figures", Path(folder) / REPORT_FILE
+    try:
+        figures.mkdir(exist_ok=True)
+    except OSError as error:
+        raise ParameterError("DIR", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
+    drawn = save_design_figures(study.to_dataset(), figures)
+    images = {file.stem: image_address(file.read_text(encoding="utf-8")) for file in drawn if file.suffix == ".svg"}
+    write_text(path, render_design_report(study, images))
+    return path
+
+
+def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
+    """The report as HTML text; `images` are addresses of the figures by name."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("frahm.report", "."), autoescape=True, trim_blocks=True, lstrip_blocks=True,
+        keep_trailing_newline=True, undefined=jinja2.StrictUndefined,
+    )  # fmt: skip
+    return environment.get_template("design.html.jinja").render(
+        study=study,
+        status="pass" if study.verified else "unverified",
+        headline="✓ verified over all attractors found" if study.verified else f"? {len(study.unverified)} unverified",
+        comparison=[comparison_row(rival) for rival in study.comparison],
+        error_head=["Device", *(f"{100 * (r - 1):+.3g} %" if r != 1 else "0 %" for r in study.errors)],
+        error_rows=error_rows(study),
+        trade_off=[
+            (f"{p.force_margin:g}", number(p.design.linear), number(p.design.kappa, 5), number(p.design.xi2),
+             number(p.worst_pipe_peak), "yes" if p.verified else "no")
+            for p in study.trade_off
+        ],
+        plots={},
+        images=images,
+    )  # fmt: skip
+
+
+def comparison_row(rival: Rival) -> tuple[str, ...]:
+    """Name, parameters, worst peaks, force margin, what the numbers rest on."""
+    design = rival.design
+    parameters: tuple[Any, ...] = ("-",) * 4
+    if design is not None:
+        parameters = tuple(number(getattr(design, name), 4) for name in ("rho2", "linear", "kappa", "xi2"))
+    return (
+        _NAMES.get(rival.name, rival.name), *parameters, number(rival.worst_pipe_peak), rival.kind,
+        number(rival.relative_peak), _margin(rival.force_margin), _basis(rival), "yes" if rival.verified else "no",
+    )  # fmt: skip
+
+
+def error_rows(study: DesignStudy) -> list[tuple[str, ...]]:
+    """Worst pipe peaks of every device; a question mark where unverified."""
+    return [
+        (
+            _NAMES.get(name, name),
+            *(number(p) + ("" if s else " ?") for p, s in zip(peaks, study.error_verified[name], strict=True)),
+        )
+        for name, peaks in study.error_table.items()
+    ]
+
+
+def _margin(value: float) -> str:
+    return "no such curve" if math.isinf(value) else f"{value:.4g}"
+
+
+def _basis(rival: Rival) -> str:
+    return f"{rival.tier}, {rival.samples} states a frequency" if rival.samples else rival.tier
