@@ -18,6 +18,7 @@ from frahm.analysis.long_term import attractors, worst
 from frahm.analysis.manifold import manifold
 from frahm.analysis.margin import detached_curve_margin
 from frahm.analysis.modes import modes
+from frahm.analysis.modulated import basins, modulated
 from frahm.analysis.motions import SAMPLES_PER_PERIOD, motions
 from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
@@ -52,9 +53,11 @@ STEPS = (
     Step("similarity numbers and onset criteria", wind),
     Step("births and merges of detached curves", detached_curve_margin),
     Step("slow manifold", manifold),
+    Step("modulated responses of the slow flow", modulated),
     Step("motions of the exact equations", motions),
     Step("slow flow against harmonic balance against integration", cross_check),
     Step("attractors at the design wind", attractors),
+    Step("basins at the design wind", basins),
     Step("worst case over the window", worst),
     Step("largest motion", largest_motion),
 )

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from frahm.plotting.basins import basin_map_figure
 from frahm.plotting.static import manifold_figure, motion_figure, response_figure
 from frahm.plotting.style import figure_style, save_figure
 from frahm.plotting.views import motion_views, trajectory_to_show
@@ -34,9 +35,16 @@ def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[D
     if curve is not None:
         for quantity, name in (("pipe_peak", "response-pipe"), ("relative_peak", "response-absorber")):
             if quantity in curve:
-                yield name, partial(response_figure, curve, quantity, views, bare, data.get("slow_flow"))
+                yield (
+                    name,
+                    partial(
+                        response_figure, curve, quantity, views, bare, data.get("slow_flow"), data.get("modulated")
+                    ),
+                )
     for view in views:
         yield f"motion-{view.key}", partial(motion_figure, view)
     if "slow_manifold" in data:
         folds = results["slow_manifold"]["folds"]
         yield "slow-manifold", partial(manifold_figure, data["slow_manifold"], trajectory_to_show(views), folds)
+    if "basin_map" in data:
+        yield "basin-map", partial(basin_map_figure, data["basin_map"])

@@ -9,10 +9,13 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from frahm.arrays import Floats
+from frahm.plotting.basins import BASIN_AXES, basin_entries, basin_indices
 from frahm.plotting.lines import (
     KIND_NAMES,
+    MODULATED_NAMES,
     MOST_LABELS,
     Line,
+    envelopes,
     largest_finite,
     lines_by_name,
     response_lines,
@@ -40,6 +43,7 @@ _SYMBOLS = {
     "branch-point": "cross",
 }
 _COLOURS = {"x1": PIPE, "z": SINK}
+_MODULATED_FILL = "rgba(0, 158, 115, 0.18)"
 _FILLS = {"x1": "rgba(0, 114, 178, 0.25)", "z": "rgba(213, 94, 0, 0.22)"}
 
 
@@ -49,9 +53,11 @@ def response_plot(
     motions: list[MotionView],
     bare: xr.Dataset | None = None,
     slow: xr.Dataset | None = None,
+    modulated: xr.Dataset | None = None,
 ) -> go.Figure:
     """Response over the detuning; see `frahm.plotting.static.response_figure`."""
     figure = go.Figure()
+    tallest = 0.0 if modulated is None else _add_modulated(figure, modulated, quantity)
     for name, line in lines_by_name(response_lines(curve, quantity)).items():
         _add_line(figure, line, line_colour(line), 2.0, name)
     if slow is not None:
@@ -61,7 +67,7 @@ def response_plot(
         x, y = _small(bare["detuning"].values), _small(bare["pipe_peak"].values)
         dotted = {"color": BARE, "dash": "dot", "width": 1.5}
         figure.add_scatter(x=x, y=y, mode="lines", line=dotted, name="without absorber")
-    top = max([largest_finite(curve[quantity].values), *_add_motions(figure, motions, quantity)])
+    top = max([tallest, largest_finite(curve[quantity].values), *_add_motions(figure, motions, quantity)])
     _add_special_points(figure, curve, quantity)
     figure.update_layout(**_layout(520))
     figure.update_xaxes(title_text=DETUNING_LABEL)
@@ -74,6 +80,45 @@ def _add_line(figure: go.Figure, line: Line, colour: str, width: float, name: st
     hover = "σ %{x:.4f} rad/s<br>%{y:.4g} m"
     x, y = _small(line.x), _small(line.y)
     figure.add_scatter(x=x, y=y, mode="lines", line=look, name=name, hovertemplate=hover, **more)
+
+
+def _add_modulated(figure: go.Figure, modulated: xr.Dataset, quantity: str) -> float:
+    """Envelopes of modulated responses, the stable ones shaded; return the largest size drawn."""
+    named, top = set(), 0.0
+    for stretch in envelopes(modulated, quantity):
+        name, hover = MODULATED_NAMES[stretch.stable], "σ %{x:.4f} rad/s<br>%{y:.4g} m"
+        look = {"color": GREEN, "width": 1, "dash": "solid" if stretch.stable else "dash"}
+        common: dict[str, Any] = {"x": _small(stretch.x), "mode": "lines", "line": look, "legendgroup": name}
+        common |= {"name": name, "hovertemplate": hover}
+        figure.add_scatter(y=_small(stretch.low), showlegend=False, **common)
+        fill = {"fill": "tonexty", "fillcolor": _MODULATED_FILL} if stretch.stable else {}
+        figure.add_scatter(y=_small(stretch.high), showlegend=stretch.stable not in named, **common, **fill)
+        named.add(stretch.stable)
+        top = max(top, float(np.max(stretch.high)) if stretch.stable else 0.0)
+    return top
+
+
+def basin_map_plot(data: xr.Dataset) -> go.Figure:
+    """Which attractor an initial state leads to; see `frahm.plotting.basins.basin_map_figure`."""
+    across, up = (str(name) for name in data["label"].dims)
+    entries, index = basin_entries(data), basin_indices(data)
+    count = len(entries)
+    scale = [[(i + side) / count, entry.colour] for i, entry in enumerate(entries) for side in (0, 1)]
+    figure = go.Figure()
+    figure.add_heatmap(
+        x=_small(data[across].values), y=_small(data[up].values), z=index.T.astype(np.int8),
+        zmin=-0.5, zmax=count - 0.5, colorscale=scale, showscale=False,
+        hovertemplate="%{x:.3g}, %{y:.3g}<extra></extra>",
+    )  # fmt: skip
+    for entry in entries:
+        mark = {"symbol": "square", "size": 12, "color": entry.colour, "line": {"color": INK, "width": 1}}
+        figure.add_scatter(x=[None], y=[None], mode="markers", name=entry.text, marker=mark)
+    rest = {"symbol": "cross-thin", "size": 11, "line": {"color": INK, "width": 1.5}}
+    figure.add_scatter(x=[0], y=[0], mode="markers", name="rest", marker=rest, hoverinfo="skip")
+    figure.update_layout(**_layout(560))
+    figure.update_xaxes(title_text=BASIN_AXES[across])
+    figure.update_yaxes(title_text=BASIN_AXES[up])
+    return figure
 
 
 def motion_plot(motion: MotionView) -> go.Figure:

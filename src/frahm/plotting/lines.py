@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +27,7 @@ KIND_NAMES = {
     "period-doubling": "period doubling",
     "branch-point": "branch point",
 }
+MODULATED_NAMES = {True: "modulated (slow flow)", False: "the same, unstable"}
 MOST_LABELS = 16  # special points: with more of them the labels would hide what they name
 
 
@@ -126,3 +127,30 @@ def thinned(x: Floats, y: Floats, most: int = 1000) -> tuple[Floats, Floats]:
     edges = np.linspace(0, y.size, most // 2 + 1).astype(int)
     kept = sorted({a + pick(y[a:b]) for a, b in pairwise(edges) if b > a for pick in (np.argmin, np.argmax)})
     return x[kept], y[kept]
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """A stretch of a modulated branch, ascending in detuning [rad/s]: smallest and largest amplitude [m]."""
+
+    x: Floats
+    low: Floats
+    high: Floats
+    stable: bool
+
+
+def envelopes(modulated: xr.Dataset, quantity: str) -> list[Envelope]:
+    """Stretches between neighbouring points of one branch, one stability and one direction."""
+    name = "pipe" if quantity == "pipe_peak" else "relative"
+    x, low, high = (modulated[key].values for key in ("detuning", f"{name}_min", f"{name}_max"))
+    stable, branch = modulated["stable"].values.astype(bool), modulated["branch"].values
+    if x.size < 2:
+        return []
+    steps = list(zip(branch[:-1], branch[:-1] == branch[1:], stable[:-1] & stable[1:], np.diff(x) > 0, strict=True))
+    found = []
+    for (_, joined, good, forward), run in groupby(range(x.size - 1), key=lambda k: steps[k]):
+        indices = list(run)
+        part = np.arange(indices[0], indices[-1] + 2)[:: 1 if forward else -1]
+        if joined:
+            found.append(Envelope(x[part], low[part], high[part], bool(good)))
+    return found

@@ -9,8 +9,10 @@ from matplotlib.patheffects import withStroke
 
 from frahm.plotting.lines import (
     KIND_NAMES,
+    MODULATED_NAMES,
     MOST_LABELS,
     Line,
+    envelopes,
     largest_finite,
     lines_by_name,
     response_lines,
@@ -38,6 +40,7 @@ def response_figure(
     motions: list[MotionView] | None = None,
     bare: xr.Dataset | None = None,
     slow: xr.Dataset | None = None,
+    modulated: xr.Dataset | None = None,
 ) -> Figure:
     """Response over the detuning: stable solid, unstable dashed, special points, motions that were integrated.
 
@@ -53,16 +56,20 @@ def response_figure(
         Response without absorbers, drawn dotted; the axis is scaled for the rest.
     slow : Dataset, optional
         Response by the slow flow, a thin line.
+    modulated : Dataset, optional
+        From `frahm.ModulatedCurve.to_dataset`: the range of a stable modulated response shaded, unstable ones dashed.
     """
     figure = new_figure(160, 105)
     axes = figure.subplots()
+    top = largest_finite(curve[quantity].values)
+    if modulated is not None:
+        top = max(top, _draw_modulated(axes, modulated, quantity))
     _draw_branches(axes, curve, quantity)
     if slow is not None:
         for i, line in enumerate(lines_by_name(response_lines(slow, quantity)).values()):
             dashes = "-" if line.stable else UNSTABLE_DASHES
             axes.plot(line.x, line.y, linestyle=dashes, label="_" if i else "slow flow", **_SLOW_LOOK)
     _draw_special_points(axes, curve, quantity)
-    top = largest_finite(curve[quantity].values)
     for motion in motions or []:
         top = max(top, _draw_motion(axes, motion, quantity))
     if bare is not None and quantity == "pipe_peak":
@@ -131,6 +138,25 @@ def _draw_branches(axes: Axes, curve: xr.Dataset, quantity: str) -> None:
     for name, line in lines_by_name(response_lines(curve, quantity)).items():
         dashes = "-" if line.stable else UNSTABLE_DASHES
         axes.plot(line.x, line.y, linestyle=dashes, color=line_colour(line), label=name)
+
+
+def _draw_modulated(axes: Axes, modulated: xr.Dataset, quantity: str) -> float:
+    """Envelopes of modulated responses, the stable ones shaded; return the largest size drawn."""
+    named, top = set(), 0.0
+    for stretch in envelopes(modulated, quantity):
+        label = "_" if stretch.stable in named else MODULATED_NAMES[stretch.stable]
+        named.add(stretch.stable)
+        if stretch.stable:
+            axes.fill_between(
+                stretch.x, stretch.low, stretch.high, facecolor=GREEN, edgecolor=GREEN, alpha=0.2, linewidth=0.8,
+                label=label,
+            )  # fmt: skip
+            top = max(top, float(np.max(stretch.high)))
+        else:
+            for y in (stretch.low, stretch.high):
+                axes.plot(stretch.x, y, linestyle=UNSTABLE_DASHES, color=GREEN, linewidth=0.7, label=label)
+                label = "_"
+    return top
 
 
 def _draw_special_points(axes: Axes, curve: xr.Dataset, quantity: str) -> None:

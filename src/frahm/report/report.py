@@ -16,7 +16,7 @@ from frahm.analysis import Analysis, margin_sentence
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.plotting.gallery import save_figures
-from frahm.plotting.interactive import CONFIG, manifold_plot, motion_plot, response_plot
+from frahm.plotting.interactive import CONFIG, basin_map_plot, manifold_plot, motion_plot, response_plot
 from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
 from frahm.report import tables
 
@@ -96,13 +96,15 @@ def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
     figures: dict[str, go.Figure] = {}
     for name, quantity in (("response-pipe", "pipe_peak"), ("response-absorber", "relative_peak")):
         if "response" in data and quantity in data["response"]:
-            beside = data.get("without_absorber"), data.get("slow_flow")
+            beside = data.get("without_absorber"), data.get("slow_flow"), data.get("modulated")
             figures[name] = response_plot(data["response"], quantity, views, *beside)
     for view in views[:_MOST_MOTIONS]:
         figures[f"motion-{view.key}"] = motion_plot(view)
     if "slow_manifold" in data:
         folds = results["slow_manifold"]["folds"]
         figures["slow-manifold"] = manifold_plot(data["slow_manifold"], trajectory_to_show(views), folds)
+    if "basin_map" in data:
+        figures["basin-map"] = basin_map_plot(data["basin_map"])
     return {name: Markup(_inside_script(figure)) for name, figure in figures.items()}
 
 

@@ -182,6 +182,24 @@ def attractor_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     return rows
 
 
+def modulated_sentence(analysis: Analysis) -> str:
+    """Where modulated responses are stable and coexist with periodic ones, as sentences; empty if there are none."""
+    found = analysis.results.get("modulated")
+    if not found or not found["ranges"]:
+        return ""
+    both = _ranges_text(found["coexistence"])
+    beside = f"; in {both} beside a stable periodic response, so that the start decides" if both else ""
+    return (
+        f"By the slow flow a stable modulated response exists at detunings {_ranges_text(found['ranges'])} rad/s"
+        f"{beside}. Its amplitude reaches {number(found['pipe_max'])} m at the pipe and"
+        f" {number(found['relative_max'])} m at the absorber."
+    )
+
+
+def _ranges_text(ranges: list[list[float]]) -> str:
+    return " and ".join(f"{number(lo)} … {number(hi)}" for lo, hi in ranges)
+
+
 def worst_sentence(analysis: Analysis) -> str:
     """Where the worst attractor over the window is, as a sentence; empty if it was not searched."""
     worst = analysis.results.get("worst_case")
