@@ -61,3 +61,15 @@ def test_find_attractors_with_200_samples(benchmark, kappa, detuning):
 def test_worst_case_over_a_window(benchmark):
     worst = benchmark.pedantic(lambda: frahm.worst_case(CASE, detuning=(-0.4, 0.4)), rounds=1)
     benchmark.extra_info |= {"pipe_peak": worst.pipe_peak, "frequencies": len(worst.surveys)}
+
+
+@pytest.mark.parametrize("kappa", [97.97, 367.38])
+def test_modulated_branches_over_the_resonance(benchmark, kappa):
+    """Both Hopf branches and the relaxation cycles, with their stability: a few seconds."""
+    curve = benchmark.pedantic(
+        lambda: frahm.modulated_branches(CASE.with_absorber(kappa=kappa), detuning=(-0.4, 0.4)),
+        rounds=2,
+        warmup_rounds=1,
+    )
+    benchmark.extra_info["points"] = int(curve.frequency.size)
+    assert curve.ranges
