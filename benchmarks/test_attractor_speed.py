@@ -66,8 +66,9 @@ def test_worst_case_over_a_window(benchmark):
 @pytest.mark.parametrize("kappa", [97.97, 367.38])
 def test_modulated_branches_over_the_resonance(benchmark, kappa):
     """Both Hopf branches and the relaxation cycles, with their stability: a few seconds."""
+    case = CASE.with_absorber(kappa=kappa)
     curve = benchmark.pedantic(
-        lambda: frahm.modulated_branches(CASE.with_absorber(kappa=kappa), detuning=(-0.4, 0.4)),
+        lambda: frahm.modulated_branches(case, detuning=(-0.4, 0.4)),
         rounds=2,
         warmup_rounds=1,
     )
