@@ -79,6 +79,20 @@ def test_refined_exponents_are_those_of_the_complete_host():
         np.testing.assert_allclose(np.abs(started[:2]), np.abs(exact[:2]), rtol=1e-8)
 
 
+def test_the_order_within_a_pair_does_not_matter():
+    system = host_of_six_modes()
+    problem, H, W = condense(system), 13, 1.05
+    u = np.zeros((H + 5, 1), complex)
+    u[1], u[3] = 0.3 - 0.1j, 0.01j
+    exact = np.empty(14, complex)
+    map_multipliers(problem, variation_of(system), H, True, W, u, exact)
+    pair = next(i for i in range(13) if exact[i].imag != 0 and abs(exact[i] - exact[i + 1].conjugate()) < 1e-8)
+    for order in ([pair, pair + 1], [pair + 1, pair]):
+        started = exact[order] * 1.001
+        refine_exponents(problem, H, True, W, u, started, 1)
+        np.testing.assert_allclose(np.abs(started), np.abs(exact[pair]), rtol=1e-8)
+
+
 def test_fast_modes_that_follow_statically_leave_the_critical_multipliers_exact():
     # the full matrices, integrated by scipy, know nothing of static modes
     system = host_of_six_modes()
