@@ -56,11 +56,6 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
         for i in range(n):  # a start that no symmetry makes orthogonal to the vector sought
             v[i] += 0.3 * math.sin(1.0 + i)
             w[i] += 0.3 * math.cos(1.0 + i)
-        gap = W
-        for other in range(multipliers.size):
-            ratio = multipliers[other] / multipliers[index] if other != index else 0j
-            if ratio != 0j:
-                gap = min(gap, abs(cmath.log(ratio)) / span)
         good = False
         _assemble(pb, P, lam, W, step, h, A, D)
         for iteration in range(12):
@@ -70,7 +65,7 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
                     break
                 change = np.sum(w * (A @ v)) / bottom
                 lam -= change
-                if abs(change) ** 3 < 1e-11 * W * gap**2:  # convergence is cubic: what is left is far below 1e-10 W
+                if abs(change) < 1e-6 * W:  # convergence is cubic: the next change would be below rounding
                     good = True
                     break
                 _assemble(pb, P, lam, W, step, h, A, D)
