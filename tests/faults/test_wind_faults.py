@@ -61,3 +61,122 @@ def test_bad_speeds(speeds):
 def test_bad_windows(window):
     with pytest.raises(frahm.ParameterError, match="wind"):
         speed_window(CASE, window)
+
+
+@pytest.mark.parametrize(
+    ("record", "says"),
+    [
+        (([0.0], [2.7]), "two at least"),
+        (([0.0, 1.0], [2.7]), "as many speeds as times"),
+        (([0.0, 2.0, 1.0], [2.7, 2.7, 2.7]), "times that ascend"),
+        (([0.0, 1.0, 1.0], [2.7, 2.7, 2.7]), "times that ascend"),
+        (([0.0, 1.0], [2.7, -0.1]), "speeds >= 0"),
+        (([0.0, float("nan")], [2.7, 2.7]), "record.time"),
+        (([0.0, 1.0], ["fast", 2.7]), "record.speed"),
+        (5.0, "a WindRecord, a CSV file, or a pair"),
+        ("no-such-file.csv", "No such file"),
+        (None, "wind.record or wind.turbulence"),
+    ],
+)
+def test_bad_records(record, says):
+    with pytest.raises(frahm.ParameterError, match=says):
+        frahm.unsteady_response(CASE, record=record)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("time,speed\n", "1 to 100000 rows"),
+        ("time,velocity\n0,1\n1,2\n", "Did you mean|has a column 'velocity'"),
+        ("time [s],speed [kg]\n0,1\n1,2\n", "does not measure"),
+        ("time,speed\n0,1\n1,\n", "speed is ''"),
+        ("time,speed\n0,1\n1,2,3\n", "cells in every row"),
+        ("speed\n1\n2\n", "no column time"),
+    ],
+)
+def test_bad_record_files(tmp_path, text, says):
+    file = tmp_path / "wind.csv"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(frahm.ParameterError, match=says):
+        frahm.unsteady_response(CASE, record=file)
+
+
+def test_a_record_beyond_a_table_is_refused_before_anything_runs():
+    with pytest.raises(frahm.ParameterError, match="not extrapolated"):
+        frahm.unsteady_response(TABLE, record=([0.0, 10.0, 20.0], [2.5, 1.9, 2.5]))
+    assert frahm.unsteady_response(TABLE, record=([0.0, 10.0, 20.0], [2.5, 2.5, 1.9]), duration=9.0).outcome.ok
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ({"duration": 30.0}, "the length of the record"),
+        ({"duration": 0.0}, "duration"),
+        ({"duration": float("nan")}, "duration"),
+        ({"seed": 3}, "seed"),
+        ({"samples_per_period": 2}, "samples_per_period"),
+        ({"tolerance": 0.1}, "tolerance"),
+        ({"initial_state": [0.0, 0.0]}, "initial_state"),
+    ],
+)
+def test_bad_settings_of_the_unsteady_response(more, says):
+    with pytest.raises(frahm.ParameterError, match=says):
+        frahm.unsteady_response(CASE, record=([0.0, 20.0], [2.7, 2.7]), **more)
+
+
+@pytest.mark.parametrize(
+    ("wind", "says"),
+    [
+        ({"turbulence": {"intensity": 2.0, "length_scale": 50}}, "wind.turbulence.intensity"),
+        ({"turbulence": {"intensity": 0.1, "length_scale": 0}}, "wind.turbulence.length_scale"),
+        ({"turbulence": {"intensity": 0.1}}, "wind.turbulence.length_scale"),
+        ({"turbulence": {"intensity": 0.1, "length_scale": 50, "spectrum": "kaimel"}}, "Did you mean 'kaimal'"),
+        ({"record": [[0, 1]]}, "wind.record"),
+        ({"record": [[0, 1], [1, -1]]}, "Entry 1"),
+        ({"record": [[0, 1], [0, 1]]}, "does not ascend"),
+        ({"record": [[t, 2.7] for t in range(5001)]}, "A longer record goes to"),
+        ({"record": "nowhere.csv"}, "No such file"),
+    ],
+)
+def test_bad_unsteady_wind_of_a_case(wind, says):
+    with pytest.raises(frahm.ParameterError, match=says):
+        CASE.with_wind(**wind)
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ({"wind": (3.0, 2.0)}, "lo < hi"),
+        ({"wind": (0.0, 2.0)}, "wind"),
+        ({"wind": 3.0}, "two wind speeds"),
+        ({"speeds": 1}, "speeds"),
+        ({"wake": "facchinetti"}, "WakeOscillator"),
+        ({"most_periods": 10}, "most_periods"),
+        ({"tolerance": -1}, "tolerance"),
+    ],
+)
+def test_bad_settings_of_the_wake_response(more, says):
+    with pytest.raises(frahm.ParameterError, match=says):
+        frahm.wake_response(CASE, **more)
+
+
+def test_the_wake_oscillator_wants_a_rigid_pipe():
+    with pytest.raises(frahm.ParameterError, match=r"pipe\.kind"):
+        frahm.wake_response("jacket-pipe-elastic")
+
+
+def test_a_motion_that_diverges_is_a_value_with_a_sentence():
+    # a softening spring beyond its range pushes the sink away for good
+    runaway = CASE.to_dict() | {
+        "absorbers": [{"mass": 4.94, "law": {"kind": "polynomial", "coefficients": [10.0, 0.0, -1e9], "damping": 0.0}}]
+    }
+    found = frahm.unsteady_response(runaway, record=([0.0, 200.0], [2.65, 2.65]))
+    assert not found.history.outcome.ok
+    assert found.bare.outcome.ok
+    assert found.to_dataset()["pipe_displacement"].isnull().any()
+    with pytest.raises(frahm.ConvergenceError):
+        frahm.unsteady_response(runaway, record=([0.0, 200.0], [2.65, 2.65]), throw=True)
+    curve = frahm.wake_response(runaway, wind=(2.9, 3.0), speeds=2)
+    assert curve.unverified
+    with pytest.raises(frahm.ConvergenceError):
+        frahm.wake_response(runaway, wind=(2.9, 3.0), speeds=2, throw=True)

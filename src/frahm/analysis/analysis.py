@@ -13,6 +13,7 @@ import numpy as np
 
 from frahm import __version__
 from frahm.analysis.cross_check import cross_check
+from frahm.analysis.gusts import gusts
 from frahm.analysis.linear import without_absorber
 from frahm.analysis.long_term import attractors, worst
 from frahm.analysis.manifold import manifold
@@ -51,6 +52,7 @@ STEPS = (
     Step("modes of the pipe", modes),
     Step("slow flow", slow_flow_response),
     Step("similarity numbers and onset criteria", wind),
+    Step("motion in unsteady wind", gusts),
     Step("births and merges of detached curves", detached_curve_margin),
     Step("slow manifold", manifold),
     Step("modulated responses of the slow flow", modulated),

@@ -11,7 +11,7 @@ from frahm.case.mode_table import ModeTable
 from frahm.case.pipe import AnyPipe, Pipe
 from frahm.case.schema import case_schema
 from frahm.case.tube import Tube
-from frahm.case.wind import Wind
+from frahm.case.wind import Turbulence, Wind
 
 __all__ = [
     "SN_CURVE_NAMES",
@@ -30,6 +30,7 @@ __all__ = [
     "Pipe",
     "PolynomialLaw",
     "Tube",
+    "Turbulence",
     "Weibull",
     "Wind",
     "builtin_names",

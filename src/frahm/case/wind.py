@@ -2,13 +2,78 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from frahm.case.quantities import Quantity
+from frahm.case.csv_text import Column, csv_rows
+from frahm.case.quantities import Choice, Door, Quantity, refusal
 from frahm.case.reynolds import LIFT, LIFT_CURVES, STROUHAL, STROUHAL_CURVES, Coefficient, reynolds_range
 from frahm.case.section import Section
+
+SPECTRA = ("kaimal", "en1991", "von-karman")
+RECORD_COLUMNS = (Column("time", "s"), Column("speed", "m/s"))
+_MOST_SAMPLES = 5000  # the samples become part of the case, which must stay a file that can be read
+
+
+class Turbulence(Section):
+    """Synthetic gusts around the wind speed."""
+
+    intensity: Annotated[float, Quantity("", "I_u", at_least=0, at_most=1)] = Field(
+        title="Turbulence intensity", description="Standard deviation of the speed over its mean."
+    )
+    length_scale: Annotated[float, Quantity("m", "L_u", above=0)] = Field(
+        title="Length scale of the turbulence", description="Mean speed times the time a gust lasts."
+    )
+    spectrum: Annotated[Literal["kaimal", "en1991", "von-karman"], Choice(SPECTRA)] = Field(
+        default="kaimal", title="Spectrum of the turbulence", description="How the gusts spread over frequency."
+    )
+
+
+@dataclass(frozen=True)
+class Record(Door):
+    """Pairs of time and wind speed, or the CSV file they are read from when the case is."""
+
+    @property
+    def unit(self) -> str:
+        """SI units."""
+        return "s, m/s"
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return (
+            f"2 to {_MOST_SAMPLES} pairs [time in s, speed in m/s], times ascending and speeds >= 0, "
+            "or the name of a CSV file with the columns time and speed"
+        )
+
+    def read(self, value: Any) -> tuple[tuple[float, float], ...]:
+        """Pairs in SI units; none for nothing."""
+        if value is None or value in ((), []):
+            return ()
+        if isinstance(value, str):
+            value = [(row["time"], row["speed"]) for row in csv_rows(value, RECORD_COLUMNS)]
+        if not isinstance(value, list | tuple) or not 2 <= len(value) <= _MOST_SAMPLES:
+            hint = "A longer record goes to frahm.unsteady_response(case, record=...)." if value else None
+            raise refusal(self.allowed, hint=hint)
+        time, speed = Quantity("s"), Quantity("m/s", at_least=0)
+        pairs: list[tuple[float, float]] = []
+        for place, entry in enumerate(value):
+            if not isinstance(entry, list | tuple) or len(entry) != 2:
+                raise refusal(self.allowed, hint=f"Entry {place} is no pair.")
+            try:
+                pairs.append((time.read(entry[0]), speed.read(entry[1])))
+            except ValueError:
+                raise refusal(self.allowed, hint=f"Entry {place} is {list(entry)!r}.") from None
+            if place and not pairs[-1][0] > pairs[-2][0]:
+                raise refusal(self.allowed, hint=f"Entry {place}: {pairs[-1][0]:g} s does not ascend.")
+        return tuple(pairs)
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema: pairs, or the name of a file."""
+        pair = {"type": "array", "minItems": 2, "maxItems": 2}
+        return {"anyOf": [{"type": "array", "items": pair, "maxItems": _MOST_SAMPLES}, {"type": "string"}]}
 
 
 class Wind(Section):
@@ -36,6 +101,17 @@ class Wind(Section):
     lift_coefficient: Annotated[Coefficient, LIFT] = Field(
         title="Lift coefficient",
         description="Amplitude of the lift over 1/2 rho U^2 D per length; a number, a table or a published curve.",
+    )
+
+    record: Annotated[tuple[tuple[float, float], ...], Record()] = Field(
+        default=(),
+        title="Wind record",
+        description="Pairs of time and speed, or a CSV file with these columns, for the motion in unsteady wind.",
+    )
+    turbulence: Turbulence | None = Field(
+        default=None,
+        title="Turbulence",
+        description="Synthetic gusts, for the motion in unsteady wind without a record.",
     )
 
     def speed_ranges(self, diameter: float) -> dict[str, tuple[float, float]]:

@@ -20,6 +20,7 @@ from frahm.loads.over_wind import (
     speed_window,
     wind_excitation,
 )
+from frahm.loads.record import WindRecord, read_record, spectral_density, turbulent_record
 from frahm.loads.reynolds import ReynoldsCurve, lift_curve, strouhal_curve
 from frahm.loads.similarity import (
     LockInBand,
@@ -56,6 +57,7 @@ __all__ = [
     "WakeState",
     "WindClimate",
     "WindExcitation",
+    "WindRecord",
     "amplitude_estimates",
     "eurocode_amplitude",
     "excitation_over_wind",
@@ -68,6 +70,7 @@ __all__ = [
     "onset_criteria",
     "onset_sentence",
     "persistence",
+    "read_record",
     "reduced_velocity",
     "reynolds_number",
     "sarpkaya_amplitude",
@@ -75,8 +78,10 @@ __all__ = [
     "shedding_frequency",
     "similarity",
     "skop_griffin_number",
+    "spectral_density",
     "speed_window",
     "strouhal_curve",
+    "turbulent_record",
     "vortex_shedding",
     "wind_climate",
     "wind_excitation",

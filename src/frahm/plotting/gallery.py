@@ -11,6 +11,7 @@ from frahm.plotting.basins import basin_map_figure
 from frahm.plotting.static import manifold_figure, motion_figure, response_figure
 from frahm.plotting.style import figure_style, save_figure
 from frahm.plotting.views import motion_views, trajectory_to_show
+from frahm.plotting.wind import gusts_figure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,6 +44,8 @@ def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[D
                 )
     for view in views:
         yield f"motion-{view.key}", partial(motion_figure, view)
+    if "unsteady_wind" in data:
+        yield "unsteady-wind", partial(gusts_figure, data["unsteady_wind"])
     if "slow_manifold" in data:
         folds = results["slow_manifold"]["folds"]
         yield "slow-manifold", partial(manifold_figure, data["slow_manifold"], trajectory_to_show(views), folds)

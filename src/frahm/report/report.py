@@ -18,6 +18,7 @@ from frahm.files import write_text
 from frahm.plotting.gallery import save_figures
 from frahm.plotting.interactive import CONFIG, basin_map_plot, manifold_plot, motion_plot, response_plot
 from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
+from frahm.plotting.wind import gusts_plot
 from frahm.report import tables
 
 REPORT_FILE = "report.html"
@@ -100,6 +101,8 @@ def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
             figures[name] = response_plot(data["response"], quantity, views, *beside)
     for view in views[:_MOST_MOTIONS]:
         figures[f"motion-{view.key}"] = motion_plot(view)
+    if "unsteady_wind" in data:
+        figures["unsteady-wind"] = gusts_plot(data["unsteady_wind"])
     if "slow_manifold" in data:
         folds = results["slow_manifold"]["folds"]
         figures["slow-manifold"] = manifold_plot(data["slow_manifold"], trajectory_to_show(views), folds)

@@ -107,6 +107,29 @@ def estimate_sentence(analysis: Analysis) -> str:
     return f"The estimates span {low} … {high} m; {used}."
 
 
+def unsteady_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Quantity, value with absorbers and value without; one value if there are none."""
+    found = analysis.results["unsteady_wind"]
+    gusts = found["reduction_by_gusts"]
+    rows = [
+        ("Largest pipe displacement [m]", number(found["pipe_peak"]), number(found["bare_pipe_peak"])),
+        ("Pipe rms [m]", number(found["pipe_rms"]), number(found["bare_pipe_rms"])),
+        ("Pipe rms in steady wind of the same mean [m]", number(found["steady_pipe_rms"]),
+         number(found["bare_steady_pipe_rms"])),
+        ("Reduction by the gusts", _percent(gusts["with_absorbers"]), _percent(gusts["without_absorbers"])),
+        ("Reduction by the absorbers", _percent(found["reduction_by_absorbers"]), "-"),
+        ("Amplitude in steady resonant wind [m]", "-", number(found["resonant_amplitude"])),
+        ("Build-up in steady resonant wind, time constant [s]", "-", number(found["build_up_time"])),
+    ]  # fmt: skip
+    if analysis.results["has_absorber"]:
+        return rows
+    return [(row[0], row[2]) for row in rows if row[2] != "-"]
+
+
+def _percent(value: float | None) -> str:
+    return "-" if value is None or not math.isfinite(value) else f"{value:.0%}"
+
+
 def special_point_rows(analysis: Analysis, method: str = "harmonic-balance") -> list[tuple[str, ...]]:
     """Label, kind, detuning, frequency in Hz, pipe peak, stroke, branch, status of every special point."""
     from frahm.plotting.lines import special_marks

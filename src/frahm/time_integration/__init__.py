@@ -3,5 +3,19 @@
 from frahm.time_integration.batch import BatchResult, integrate_batch
 from frahm.time_integration.history import TimeHistory, integrate
 from frahm.time_integration.signals import Peaks
+from frahm.time_integration.unsteady import DrivenHistory, UnsteadyResponse, unsteady_response
+from frahm.time_integration.wake import LockInCurve, WakeResponse, wake_response
 
-__all__ = ["BatchResult", "Peaks", "TimeHistory", "integrate", "integrate_batch"]
+__all__ = [
+    "BatchResult",
+    "DrivenHistory",
+    "LockInCurve",
+    "Peaks",
+    "TimeHistory",
+    "UnsteadyResponse",
+    "WakeResponse",
+    "integrate",
+    "integrate_batch",
+    "unsteady_response",
+    "wake_response",
+]

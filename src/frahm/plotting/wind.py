@@ -1,0 +1,109 @@
+"""Figures about the wind: the lock-in curve of the wake oscillator, and the pipe in gusts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from frahm.arrays import Floats
+from frahm.plotting.interactive import plot_layout
+from frahm.plotting.style import BARE, INK, PIPE, SKY, new_figure
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+_BARE_LABEL, _SINK_LABEL, _STEADY_LABEL = "without absorbers", "with absorbers", "steady resonance, without absorbers"
+
+
+def lock_in_figure(curve: xr.Dataset) -> Figure:
+    """Largest pipe motion over the wind speed, rising and falling.
+
+    Parameters
+    ----------
+    curve : Dataset
+        From `frahm.WakeResponse.to_dataset`.
+    """
+    figure = new_figure(160, 90)
+    axes = figure.subplots()
+    speed, looks = curve["speed"].values, []
+    if "relative_peak" in curve:
+        looks.append(("pipe_peak", PIPE, _SINK_LABEL))
+    looks.append(("bare_pipe_peak", BARE, _BARE_LABEL))
+    for name, colour, label in looks:
+        up, down = curve[name].values
+        axes.plot(speed, up, "-", color=colour, label=f"{label}, wind rising")
+        axes.plot(speed, down, linestyle=(0, (4.0, 2.0)), color=colour, label=f"{label}, wind falling")
+        settled = curve[name.replace("pipe_peak", "settled")].values > 0
+        for row, values in zip(settled, (up, down), strict=True):
+            axes.plot(speed[~row], values[~row], "x", color=INK, markersize=4)
+    axes.set(xlabel="wind speed [m/s]", ylabel="largest pipe displacement [m]", ylim=(0, None))
+    figure.legend(loc="outside lower center", ncols=2)
+    return figure
+
+
+def gusts_figure(motion: xr.Dataset) -> Figure:
+    """Wind speed, and the envelopes of the pipe with and without absorbers.
+
+    Parameters
+    ----------
+    motion : Dataset
+        From `frahm.UnsteadyResponse.to_dataset`.
+    """
+    figure = new_figure(160, 110)
+    wind, pipe = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2))
+    wind.plot(*_thin(motion), color=SKY, linewidth=0.8)
+    wind.set(ylabel="wind [m/s]")
+    for name, colour, label in _envelopes(motion):
+        pipe.plot(*_envelope(motion, name), color=colour, linewidth=1.2, label=label)
+    resonant = float(motion.attrs["resonant_amplitude"])
+    if np.isfinite(resonant):
+        pipe.axhline(resonant, color=BARE, linestyle=":", linewidth=1.0, label=_STEADY_LABEL)
+    pipe.set(xlabel="time [s]", ylabel="envelope of the pipe [m]", ylim=(0, None))
+    pipe.margins(x=0.01)
+    figure.legend(loc="outside lower center", ncols=3)
+    return figure
+
+
+def gusts_plot(motion: xr.Dataset) -> go.Figure:
+    """The same for the browser."""
+    figure = make_subplots(rows=2, cols=1, shared_xaxes=True, vertical_spacing=0.06, row_heights=[1, 2])
+    time, speed = _thin(motion)
+    look = {"color": SKY, "width": 1}
+    figure.add_scatter(x=time, y=speed, mode="lines", line=look, showlegend=False, row=1, col=1)
+    for name, colour, label in _envelopes(motion):
+        time, size = _envelope(motion, name)
+        figure.add_scatter(x=time, y=size, mode="lines", line={"color": colour, "width": 2}, name=label, row=2, col=1)
+    resonant = float(motion.attrs["resonant_amplitude"])
+    if np.isfinite(resonant):
+        dotted = {"color": BARE, "dash": "dot", "width": 1.5}
+        ends = {"x": [float(time[0]), float(time[-1])], "y": [resonant] * 2}
+        figure.add_scatter(**ends, mode="lines", line=dotted, name=_STEADY_LABEL, row=2, col=1)
+    figure.update_layout(**plot_layout(520))
+    figure.update_xaxes(title_text="time [s]", row=2, col=1)
+    figure.update_yaxes(title_text="wind [m/s]", row=1, col=1)
+    figure.update_yaxes(title_text="envelope of the pipe [m]", rangemode="tozero", row=2, col=1)
+    return figure
+
+
+def _envelopes(motion: xr.Dataset) -> list[tuple[str, str, str]]:
+    bare = ("bare_pipe_displacement", BARE, _BARE_LABEL)
+    return [bare, ("pipe_displacement", PIPE, _SINK_LABEL)] if "relative_displacement" in motion else [bare]
+
+
+def _envelope(motion: xr.Dataset, name: str) -> tuple[Floats, Floats]:
+    """Largest |x| of every natural period, in its middle."""
+    width = int(motion.attrs["samples_per_period"])
+    count = motion["time"].size // width
+    time = motion["time"].values[: count * width].reshape(count, width).mean(axis=1)
+    size = np.abs(motion[name].values[: count * width]).reshape(count, width).max(axis=1)
+    return np.float32(time), np.float32(size)
+
+
+def _thin(motion: xr.Dataset) -> tuple[Floats, Floats]:
+    """Wind speed at two samples a natural period: gusts are slower."""
+    step = max(1, int(motion.attrs["samples_per_period"]) // 2)
+    return np.float32(motion["time"].values[::step]), np.float32(motion["wind_speed"].values[::step])

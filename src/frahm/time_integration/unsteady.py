@@ -1,0 +1,431 @@
+"""The pipe in a wind that changes: its shedding frequency and lift follow every gust."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from frahm.arrays import Floats, finite_array, frozen, labelled
+from frahm.case import Case, load_case
+from frahm.errors import ConvergenceError, Outcome, ParameterError, check_count, check_number
+from frahm.loads import WindExcitation, wind_excitation
+from frahm.loads.record import WindRecord, as_record, constant_record, turbulent_record
+from frahm.loads.vortex import check_speeds
+from frahm.systems import System, build_system
+from frahm.time_integration import signals
+from frahm.time_integration.batch import LEAST_STEPS, STEPS_PER_PERIOD, TOLERANCE, check_memory, outcome_of
+from frahm.time_integration.driven import Flow, drive, mechanics_of, table_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_DEFAULT_DURATION = 600.0  # [s], over which wind speeds are averaged
+_GUST_PERIODS = 2.0  # shedding periods the fastest gust kept lasts: vortices cannot follow faster ones
+_FLOOR = 1e-6  # of the static deflection: the size of a pipe at rest
+
+
+@dataclass(frozen=True, eq=False)
+class DrivenHistory:
+    """A trajectory in unsteady wind at equally spaced times.
+
+    Attributes
+    ----------
+    time : ndarray, shape (s,)
+        From the start of the record [s].
+    x, v : ndarray, shape (s, n)
+        Displacements [m] and velocities [m/s] of the coordinates.
+    z : ndarray, shape (s,)
+        Displacement of the first element [m]; NaN without elements.
+    phase : ndarray, shape (s,)
+        Phase of the shedding, the integral of Omega dt [rad].
+    outcome : Outcome
+        How the run ended; if it failed, the samples end where it did.
+    steps : tuple of int
+        Accepted and rejected steps.
+    system : System
+    """
+
+    time: Floats
+    x: Floats
+    v: Floats
+    z: Floats
+    phase: Floats
+    outcome: Outcome
+    steps: tuple[int, int]
+    system: System
+
+    @property
+    def pipe(self) -> Floats:
+        """Displacement of the pipe [m], shape (s,)."""
+        return self.x @ self.system.output
+
+    @property
+    def pipe_peak(self) -> float:
+        """Largest displacement of the pipe [m]."""
+        return signals.peak(self.pipe, self.v @ self.system.output, self._spacing)
+
+    @property
+    def relative_peak(self) -> float:
+        """Largest displacement of the first element [m]; NaN without elements."""
+        if not self.system.elements:
+            return math.nan
+        return signals.peak(self.z, self.v @ self.system.elements[0].direction, self._spacing)
+
+    def pipe_rms(self, since: float = 0.0) -> float:
+        """Root mean square of the pipe [m] from the time `since` [s] on."""
+        kept = self.pipe[self.time >= since - 0.5 * self._spacing]
+        return float(np.sqrt(np.mean(kept**2))) if kept.size else math.nan
+
+    @property
+    def _spacing(self) -> float:
+        return float(self.time[1] - self.time[0]) if self.time.size > 1 else 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class UnsteadyResponse:
+    """What a pipe does in unsteady wind, with and without its absorbers, and in steady wind of the same mean.
+
+    Attributes
+    ----------
+    case : Case
+    record : WindRecord
+        The wind.
+    speed, frequency, lift : ndarray, shape (s,)
+        Wind speed [m/s], shedding frequency [rad/s] and lift of a pipe of the length of the case [N] at the samples.
+    history, steady : DrivenHistory
+        The case in the record, and in steady wind of its mean speed.
+    bare, bare_steady : DrivenHistory
+        The same without absorbers.
+    resonant_speed : float
+        Wind speed whose shedding meets the natural frequency [m/s]; NaN if the tables do not reach it.
+    resonant_amplitude : float
+        Amplitude of the pipe without absorbers in steady wind of that speed [m], in closed form.
+    time_constant : float
+        1/(zeta omega) of the pipe without absorbers [s], in closed form.
+    build_up_time : float
+        The same from an integrated build-up in steady resonant wind [s]; NaN if it was not done.
+    since : float
+        Half of the duration [s]: rms values are of the time after it.
+    notes : tuple of str
+        What a reader must know.
+    samples_per_period : int
+        Samples kept per natural period.
+    tolerance : float
+        Local error per step relative to the size of the motion.
+    """
+
+    case: Case
+    record: WindRecord
+    speed: Floats
+    frequency: Floats
+    lift: Floats
+    history: DrivenHistory
+    steady: DrivenHistory
+    bare: DrivenHistory
+    bare_steady: DrivenHistory
+    resonant_speed: float
+    resonant_amplitude: float
+    time_constant: float
+    build_up_time: float
+    since: float
+    notes: tuple[str, ...]
+    samples_per_period: int
+    tolerance: float
+
+    @property
+    def outcome(self) -> Outcome:
+        """Finished if all four runs did, otherwise how the first one that failed ended."""
+        runs = (self.history, self.steady, self.bare, self.bare_steady)
+        return next((run.outcome for run in runs if not run.outcome.ok), Outcome.DONE)
+
+    @property
+    def reduction_by_absorbers(self) -> float:
+        """1 - rms with absorbers over rms without, in the record [-]."""
+        return 1 - _ratio(self.history.pipe_rms(self.since), self.bare.pipe_rms(self.since))
+
+    @property
+    def reduction_by_gusts(self) -> tuple[float, float]:
+        """1 - rms in the record over rms in steady wind of the same mean, with and without absorbers [-].
+
+        Negative where the gusts do harm: a mean wind beside resonance moves the pipe less than one that sweeps over it.
+        """
+        pairs = ((self.history, self.steady), (self.bare, self.bare_steady))
+        with_them, without = (1 - _ratio(a.pipe_rms(self.since), b.pipe_rms(self.since)) for a, b in pairs)
+        return with_them, without
+
+    def to_dataset(self) -> xr.Dataset:
+        """Histories of wind and motions over time, labelled; NaN after a run that failed."""
+        import xarray as xr
+
+        from frahm import __version__
+
+        size = self.speed.size
+        names = {
+            "pipe_displacement": (self.history.pipe, "displacement of the pipe"),
+            "bare_pipe_displacement": (self.bare.pipe, "displacement of the pipe without absorbers"),
+            "steady_pipe_displacement": (self.steady.pipe, "displacement of the pipe in steady wind"),
+            "bare_steady_pipe_displacement": (
+                self.bare_steady.pipe, "displacement of the pipe without absorbers in steady wind",
+            ),
+        }  # fmt: skip
+        if self.history.system.elements:
+            names["relative_displacement"] = (self.history.z, "displacement of the first element")
+        spacing = float(self.history.time[1]) if self.history.time.size > 1 else 0.0
+        return xr.Dataset(
+            {
+                "wind_speed": labelled("time", self.speed, "wind speed", "m/s"),
+                "frequency": labelled("time", self.frequency, "shedding frequency Omega", "rad/s"),
+                "lift": labelled("time", self.lift, "amplitude of the lift", "N"),
+                **{name: labelled("time", _filled(x, size), text, "m") for name, (x, text) in names.items()},
+            },
+            {"time": labelled("time", spacing * np.arange(size), "time", "s")},
+            {
+                "case": self.case.name, "record": self.record.source, "tolerance": self.tolerance,
+                "outcome": self.outcome.name, "time_constant": self.time_constant,
+                "build_up_time": self.build_up_time, "resonant_amplitude": self.resonant_amplitude,
+                "samples_per_period": self.samples_per_period, "frahm": __version__,
+            },
+        )  # fmt: skip
+
+
+def unsteady_response(
+    case: Any,
+    *,
+    record: Any = None,
+    duration: float | None = None,
+    seed: int | None = None,
+    initial_state: ArrayLike | None = None,
+    samples_per_period: int = 32,
+    tolerance: float | None = None,
+    throw: bool = False,
+) -> UnsteadyResponse:
+    """Integrate the pipe of a case in unsteady wind, with and without its absorbers.
+
+    Shedding frequency and lift follow the wind at every instant: phase = int Omega(U(t)) dt, and the force is
+    F_L(U(t)) cos phase. That holds for gusts much longer than a shedding period.
+
+    Parameters
+    ----------
+    case : Case, str, Path or dict
+        A case, or whatever `frahm.load_case` reads.
+    record : WindRecord, str, Path or (time, speed), optional
+        The wind; a text is a CSV file with the columns time and speed. By default the record of the case, otherwise its
+        turbulence around its wind speed.
+    duration : float, optional
+        Time to integrate [s]; by default all of a record, 600 s of turbulence.
+    seed : int, optional
+        Of the synthetic turbulence; by default the seed of the analysis.
+    initial_state : array_like, shape (2n,), optional
+        (x_0, v_0, x_1, v_1, ...) with absorbers; the pipe without them starts from the part that is its own. Rest by
+        default.
+    samples_per_period : int
+        Samples kept per natural period of the pipe.
+    tolerance : float, optional
+        Local error per step relative to the size of the motion; 1e-7 by default.
+    throw : bool
+        Raise if a run fails, instead of returning what was computed with its `outcome`.
+
+    Raises
+    ------
+    ParameterError
+        For bad input; if there is neither record nor turbulence; if the record is shorter than the duration; if the
+        Strouhal number or the lift coefficient is not given at one of its speeds.
+    ConvergenceError
+        If a run fails and `throw` is true.
+    """
+    case = load_case(case)
+    wind = _wind(case, record, duration, seed)
+    span = wind.duration if duration is None else min(duration, wind.duration)
+    low, high = _extremes(wind, span)
+    check_speeds(case, "record", low, high)
+    tolerance = TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
+    per_period = check_count("samples_per_period", samples_per_period, at_least=8, at_most=10**4)
+    spacing = 2 * math.pi / case.pipe.frequency / per_period
+    count = math.floor(span / spacing * (1 + 1e-14)) + 1
+    system, bare = build_system(case), build_system(case.without_absorbers())
+    check_memory("duration", span, count * (2 * system.size + 2) * 4)
+    n, alone = system.size, bare.size
+    state = np.zeros(2 * n) if initial_state is None else finite_array("initial_state", initial_state, (2 * n,))
+    law = wind_excitation(case)
+    calm = constant_record(_mean(wind, span), max(span, spacing))
+    with_them = (case, system, state, spacing, count, tolerance)
+    without = (case.without_absorbers(), bare, state[: 2 * alone], spacing, count, tolerance)
+    runs = [integrate_record(record, *which) for which in (with_them, without) for record in (wind, calm)]
+    failed = next((run.outcome for run in runs if not run.outcome.ok), None)
+    if throw and failed is not None:
+        raise ConvergenceError(failed.value)
+    times = wind.time[0] + spacing * np.arange(count)
+    speed = np.interp(times, wind.time, wind.speed)
+    resonance = law.speeds_of(case.pipe.frequency)
+    resonant, amplitude, measured = _resonance(case, bare, float(resonance.min()) if resonance.size else math.nan)
+    rate = case.pipe.damping_ratio * case.pipe.frequency
+    return UnsteadyResponse(
+        case=case, record=wind, speed=frozen(speed), frequency=frozen(law.frequency(speed)),
+        lift=frozen(law.lift(speed)), history=runs[0], steady=runs[1], bare=runs[2], bare_steady=runs[3],
+        resonant_speed=resonant, resonant_amplitude=amplitude, time_constant=1 / rate if rate else math.inf,
+        build_up_time=measured, since=0.5 * span, notes=_notes(case, wind, span),
+        samples_per_period=per_period, tolerance=tolerance,
+    )  # fmt: skip
+
+
+def integrate_record(
+    record: WindRecord,
+    case: Case,
+    system: System,
+    state: Floats,
+    spacing: float,
+    count: int,
+    tolerance: float,
+) -> DrivenHistory:
+    """One trajectory of a system, made from a case, in the wind of a record.
+
+    Parameters
+    ----------
+    record : WindRecord
+    case : Case
+        Gives shedding and lift.
+    system : System
+        Its forcing is the lift at the wind speed of the case.
+    state : ndarray, shape (2n,)
+        (x_0, v_0, x_1, v_1, ...).
+    spacing : float
+        Of the samples [s].
+    count : int
+        Samples, the initial state included.
+    tolerance : float
+        Local error per step relative to the size of the motion.
+    """
+    omega, n = system.reference_frequency, system.size
+    flow, shape = _flow(case, system, record)
+    mechanics = mechanics_of(system, shape)
+    push = float(np.max(np.abs(mechanics.forcing))) * flow.pressure * float(np.max(record.speed)) ** 2
+    largest = float(np.max(flow.lift[:, 1]))
+    start = np.concatenate([state[0::2], state[1::2], [0.0, 0.0]])
+    samples = np.empty((count, start.size))
+    knots, speeds = _with_kinks(record, wind_excitation(case))
+    steps = LEAST_STEPS + (STEPS_PER_PERIOD * spacing * omega / (2 * math.pi) + 4) * count + 4 * knots.size
+    code, taken, accepted, rejected = drive(
+        mechanics, flow, knots, speeds, spacing, omega,
+        max(_FLOOR * push * largest / omega**2, 1e-300), tolerance, steps, start, samples,
+    )  # fmt: skip
+    x, v = frozen(samples[:taken, :n]), frozen(samples[:taken, n : 2 * n])
+    direction = system.elements[0].direction if system.elements else np.full(n, np.nan)
+    return DrivenHistory(
+        time=frozen(spacing * np.arange(taken)), x=x, v=v, z=frozen(x @ direction),
+        phase=frozen(samples[:taken, 2 * n]), outcome=outcome_of(code), steps=(int(accepted), int(rejected)),
+        system=system,
+    )  # fmt: skip
+
+
+def _with_kinks(record: WindRecord, law: WindExcitation) -> tuple[Floats, Floats]:
+    """Times and speeds of a record, with those where a table over the Reynolds number bends: no step crosses them."""
+    t, U = record.time, record.speed
+    times, speeds = [np.array(t)], [np.array(U)]
+    for kink in law.kinks(float(U.min()), float(U.max())):
+        i = np.flatnonzero((U[:-1] - kink) * (U[1:] - kink) < 0)
+        times.append(t[i] + (kink - U[i]) / (U[i + 1] - U[i]) * (t[i + 1] - t[i]))
+        speeds.append(np.full(i.size, kink))
+    knots, first = np.unique(np.concatenate(times), return_index=True)
+    return knots, np.concatenate(speeds)[first]
+
+
+def _flow(case: Case, system: System, record: WindRecord) -> tuple[Flow, Floats]:
+    """What the wind does, and the force on the coordinates per unit of U^2 C_L [N s^2/m^2]."""
+    law = wind_excitation(case)
+    shift = math.log(case.wind.viscosity / case.pipe.diameter)  # ln U = ln Re + shift
+    strouhal = table_of(law.strouhal.knots + shift, law.strouhal.values)
+    lift = table_of(law.lift_coefficient.knots + shift, law.lift_coefficient.values)
+    # The lift of the case at its own wind may be zero where the table has another: any other speed shares the shape.
+    speeds = np.append(record.speed[record.speed > 0], case.wind.speed)
+    forces = law.lift(speeds)
+    strongest = float(speeds[int(np.nanargmax(forces))])
+    reference = system if strongest == case.wind.speed else build_system(case.with_wind(speed=strongest))
+    scale = strongest**2 * float(law.lift_coefficient.value(law.reynolds_number(strongest)))
+    shape = np.array(reference.forcing) / scale if scale else np.zeros(system.size)
+    return Flow(False, 2 * math.pi / case.pipe.diameter, 1.0, strouhal, lift, 0.0, 0.0, 0.0), shape
+
+
+def _wind(case: Case, record: Any, duration: float | None, seed: int | None) -> WindRecord:
+    if duration is not None:
+        check_number("duration", duration, above=0, unit="s")
+    if record is None and case.wind.record:
+        record = np.array(case.wind.record).T
+    if record is not None:
+        if seed is not None:
+            raise ParameterError("seed", seed, "nothing, because the wind is a record")
+        found = as_record(record)
+        if duration is not None and duration > found.duration * (1 + 1e-12):
+            raise ParameterError("duration", duration, f"at most {found.duration:g} s, the length of the record")
+        return found
+    gusts = case.wind.turbulence
+    if gusts is None:
+        raise ParameterError("record", None, "a wind record, or a case with wind.record or wind.turbulence")
+    law = wind_excitation(case)
+    shedding = float(law.frequency(case.wind.speed)) / (2 * math.pi)
+    return turbulent_record(
+        case.wind.speed, gusts.intensity, gusts.length_scale, _DEFAULT_DURATION if duration is None else duration,
+        highest_frequency=shedding / _GUST_PERIODS, spectrum=gusts.spectrum,
+        seed=case.analysis.seed if seed is None else seed,
+    )  # fmt: skip
+
+
+def _extremes(record: WindRecord, span: float) -> tuple[float, float]:
+    end = record.time[0] + span
+    inside = np.append(record.speed[record.time <= end], np.interp(end, record.time, record.speed))
+    return float(inside.min()), float(inside.max())
+
+
+def _mean(record: WindRecord, span: float) -> float:
+    """Time average of the speed over the first `span` seconds."""
+    end = record.time[0] + span
+    kept = record.time < end
+    time = np.append(record.time[kept], end)
+    return float(np.trapezoid(np.append(record.speed[kept], np.interp(end, record.time, record.speed)), time) / span)
+
+
+def _resonance(case: Case, bare: System, speed: float) -> tuple[float, float, float]:
+    """Resonant speed, amplitude of the governing mode there, and the time constant of an integrated build-up."""
+    zeta, omega = case.pipe.damping_ratio, case.pipe.frequency
+    low, high = wind_excitation(case).speed_range
+    if math.isnan(speed) or not low <= speed <= high:
+        return math.nan, math.nan, math.nan
+    here = case.without_absorbers().with_wind(speed=speed)
+    system = build_system(here)
+    if zeta == 0:
+        return speed, math.inf, math.nan
+    amplitude = float(system.forcing[0]) / (2 * case.pipe.mass * zeta * omega**2)
+    if amplitude == 0 or zeta < 1e-6 or zeta > 0.05:  # too slow to integrate, or over before a few periods are
+        return speed, amplitude, math.nan
+    periods = round(1.5 / (2 * math.pi * zeta))
+    spacing = 2 * math.pi / omega * periods
+    run = integrate_record(constant_record(speed, 3 * spacing), here, system, np.zeros(2 * system.size), spacing, 3,
+                           TOLERANCE)  # fmt: skip
+    # x = A (1 - e^-t/tau) sin: the ratio of two sizes, one time apart and twice it, knows neither A nor the phase.
+    size = np.hypot(run.x[:, 0], run.v[:, 0] / omega)
+    ratio = float(size[2] / size[1]) - 1
+    return speed, amplitude, spacing / -math.log(ratio) if 0 < ratio < 1 else math.nan
+
+
+def _notes(case: Case, record: WindRecord, span: float) -> tuple[str, ...]:
+    notes = list(record.notes)
+    notes.append(
+        "Shedding frequency and lift follow the wind without delay and in phase along the pipe; a gust that is short "
+        "against the shedding period, or does not cover the pipe, does less."
+    )
+    if span * case.pipe.damping_ratio * case.pipe.frequency < 3:
+        notes.append("The record is shorter than three time constants of the pipe: its motion has not built up fully.")
+    return tuple(notes)
+
+
+def _ratio(value: float, reference: float) -> float:
+    return value / reference if reference > 0 else math.nan
+
+
+def _filled(values: Floats, size: int) -> Floats:
+    filled = np.full(size, np.nan)
+    filled[: values.size] = values
+    return filled
