@@ -64,7 +64,7 @@ def response_plot(
         for i, line in enumerate(lines_by_name(response_lines(slow, quantity)).values()):
             _add_line(figure, line, INK, 0.8, "slow flow", legendgroup="slow flow", showlegend=i == 0)
     if bare is not None and quantity == "pipe_peak":
-        x, y = _small(bare["detuning"].values), _small(bare["pipe_peak"].values)
+        x, y = single(bare["detuning"].values), single(bare["pipe_peak"].values)
         dotted = {"color": BARE, "dash": "dot", "width": 1.5}
         figure.add_scatter(x=x, y=y, mode="lines", line=dotted, name="without absorber")
     top = max([tallest, largest_finite(curve[quantity].values), *_add_motions(figure, motions, quantity)])
@@ -78,7 +78,7 @@ def response_plot(
 def _add_line(figure: go.Figure, line: Line, colour: str, width: float, name: str, **more: Any) -> None:
     look = {"color": colour, "dash": "solid" if line.stable else "dash", "width": width}
     hover = "σ %{x:.4f} rad/s<br>%{y:.4g} m"
-    x, y = _small(line.x), _small(line.y)
+    x, y = single(line.x), single(line.y)
     figure.add_scatter(x=x, y=y, mode="lines", line=look, name=name, hovertemplate=hover, **more)
 
 
@@ -127,12 +127,12 @@ def motion_plot(motion: MotionView) -> go.Figure:
     for name in reversed(motion.signals):
         look: dict[str, Any] = {"color": _COLOURS[name], "width": 1}
         common: dict[str, Any] = {"legendgroup": name, "name": LABELS[name], "mode": "lines"}
-        time, low, high = (_small(values) for values in motion.envelope[name])
+        time, low, high = (single(values) for values in motion.envelope[name])
         figure.add_scatter(x=time, y=low, line=look, showlegend=False, row=1, col=1, **common)
         figure.add_scatter(x=time, y=high, line=look, fill="tonexty", fillcolor=_FILLS[name], row=1, col=1, **common)
         for row, (x, y) in ((2, motion.last[name]), (3, thinned(*motion.spectrum[name]))):
             dashed = look | {"dash": "solid" if name == "x1" or row == 3 else "dash"}
-            figure.add_scatter(x=_small(x), y=_small(y), line=dashed, showlegend=False, row=row, col=1, **common)
+            figure.add_scatter(x=single(x), y=single(y), line=dashed, showlegend=False, row=row, col=1, **common)
     decades = [float(np.log10(value)) for value in motion.spectrum_range]
     figure.updateplot_layout(**plot_layout(760))
     figure.update_xaxes(title_text="time [s], whole run", row=1, col=1)
@@ -152,16 +152,16 @@ def manifold_plot(manifold: xr.Dataset, motion: MotionView | None, folds: dict[s
     if motion is not None and motion.slow is not None:
         Z, X = motion.slow
         figure.add_scatter(
-            x=_small(Z), y=_small(X), mode="lines", line={"color": GREEN, "width": 1},
+            x=single(Z), y=single(X), mode="lines", line={"color": GREEN, "width": 1},
             name=f"motion at σ = {motion.detuning:.3g} rad/s",
         )  # fmt: skip
     Z, X = manifold["relative_amplitude"].values, manifold["pipe_amplitude"].values
     attracting = manifold["attracting"].values > 0
     for holds, name, dash in ((attracting, "attracting", "solid"), (~attracting, "repelling", "dash")):
         if np.any(holds):
-            y = _small(np.where(holds, X, np.nan))
+            y = single(np.where(holds, X, np.nan))
             look = {"color": INK, "dash": dash, "width": 2}
-            figure.add_scatter(x=_small(Z), y=y, mode="lines", line=look, name=f"slow manifold, {name}")
+            figure.add_scatter(x=single(Z), y=y, mode="lines", line=look, name=f"slow manifold, {name}")
     if folds:
         _add_folds(figure, folds)
     figure.updateplot_layout(**plot_layout(460))
@@ -227,6 +227,6 @@ def plot_layout(height: int) -> dict[str, Any]:
     }
 
 
-def _small(values: Floats) -> np.ndarray:
+def single(values: Floats) -> np.ndarray:
     """Single precision is more than a screen can show, and half the file."""
     return np.asarray(values, dtype=np.float32)

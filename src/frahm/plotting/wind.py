@@ -9,7 +9,7 @@ import plotly.graph_objects as go
 from plotly.subplots import make_subplots
 
 from frahm.arrays import Floats
-from frahm.plotting.interactive import plot_layout
+from frahm.plotting.interactive import plot_layout, single
 from frahm.plotting.style import BARE, INK, PIPE, SKY, new_figure
 
 if TYPE_CHECKING:
@@ -37,9 +37,10 @@ def lock_in_figure(curve: xr.Dataset) -> Figure:
         up, down = curve[name].values
         axes.plot(speed, up, "-", color=colour, label=f"{label}, wind rising")
         axes.plot(speed, down, linestyle=(0, (4.0, 2.0)), color=colour, label=f"{label}, wind falling")
-        settled = curve[name.replace("pipe_peak", "settled")].values > 0
-        for row, values in zip(settled, (up, down), strict=True):
-            axes.plot(speed[~row], values[~row], "x", color=INK, markersize=4)
+        open_ends = curve[name.replace("pipe_peak", "settled")].values == 0
+        if open_ends.any():
+            at = np.broadcast_to(speed, open_ends.shape)[open_ends]
+            axes.plot(at, curve[name].values[open_ends], "x", color=INK, markersize=4, label=f"{label}, not settled")
     axes.set(xlabel="wind speed [m/s]", ylabel="largest pipe displacement [m]", ylim=(0, None))
     figure.legend(loc="outside lower center", ncols=2)
     return figure
@@ -100,10 +101,10 @@ def _envelope(motion: xr.Dataset, name: str) -> tuple[Floats, Floats]:
     count = motion["time"].size // width
     time = motion["time"].values[: count * width].reshape(count, width).mean(axis=1)
     size = np.abs(motion[name].values[: count * width]).reshape(count, width).max(axis=1)
-    return np.float32(time), np.float32(size)
+    return single(time), single(size)
 
 
 def _thin(motion: xr.Dataset) -> tuple[Floats, Floats]:
     """Wind speed at two samples a natural period: gusts are slower."""
     step = max(1, int(motion.attrs["samples_per_period"]) // 2)
-    return np.float32(motion["time"].values[::step]), np.float32(motion["wind_speed"].values[::step])
+    return single(motion["time"].values[::step]), single(motion["wind_speed"].values[::step])

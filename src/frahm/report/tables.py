@@ -111,7 +111,7 @@ def unsteady_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     """Quantity, value with absorbers and value without; one value if there are none."""
     found = analysis.results["unsteady_wind"]
     gusts = found["reduction_by_gusts"]
-    rows = [
+    rows: list[tuple[str, ...]] = [
         ("Largest pipe displacement [m]", number(found["pipe_peak"]), number(found["bare_pipe_peak"])),
         ("Pipe rms [m]", number(found["pipe_rms"]), number(found["bare_pipe_rms"])),
         ("Pipe rms in steady wind of the same mean [m]", number(found["steady_pipe_rms"]),

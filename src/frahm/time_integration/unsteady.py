@@ -412,10 +412,12 @@ def _resonance(case: Case, bare: System, speed: float) -> tuple[float, float, fl
 
 def _notes(case: Case, record: WindRecord, span: float) -> tuple[str, ...]:
     notes = list(record.notes)
-    notes.append(
+    notes += [
         "Shedding frequency and lift follow the wind without delay and in phase along the pipe; a gust that is short "
-        "against the shedding period, or does not cover the pipe, does less."
-    )
+        "against the shedding period, or does not cover the pipe, does less.",
+        "The motion does not hold the shedding to itself here: where vortices lock in, gusts detune them less, and the "
+        "pipe moves more than in this result. What gusts take off is no margin to design on.",
+    ]
     if span * case.pipe.damping_ratio * case.pipe.frequency < 3:
         notes.append("The record is shorter than three time constants of the pipe: its motion has not built up fully.")
     return tuple(notes)
