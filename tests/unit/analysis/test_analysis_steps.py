@@ -10,9 +10,12 @@ from frahm.analysis import analysis as analysis_module
 from frahm.analysis import cross_check as cross_check_module
 from frahm.analysis.analysis import plain
 from frahm.analysis.cross_check import cross_check
+from frahm.analysis.gusts import gusts
+from frahm.analysis.linear import without_absorber
 from frahm.analysis.margin import detached_curve_margin
 from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.wind import wind
+from frahm.plotting.gallery import drawings
 from frahm.reproduction.motions import equilibrium_state
 from frahm.slow_flow import slow_flow_of
 from frahm.slow_flow.motion import slow_velocity
@@ -249,3 +252,34 @@ def test_wind_step_lists_criteria_and_estimates_beside_the_computed_amplitude():
     assert {row["standing"] for row in found["criteria"]} == {"verified", "secondary"}
     assert [row["expects_vibration"] for row in found["criteria"]] == [False, True, True, None, True, True]
     assert json.loads(json.dumps(plain(found), allow_nan=False))["criteria"][1]["speeds"][1] is None
+
+
+def test_gusts_step_is_there_when_the_case_names_an_unsteady_wind():
+    assert gusts(Work(CASE)).results == {}
+    found = gusts(Work(CASE.with_wind(record=[[0, 2.6], [30, 2.7], [60, 2.5]])))
+    numbers = found.results["unsteady_wind"]
+    assert numbers["duration"] == pytest.approx(60, abs=0.1)
+    assert numbers["build_up_time"] == pytest.approx(136.03, abs=0.1)
+    direct = frahm.unsteady_response(CASE, record=([0, 30, 60], [2.6, 2.7, 2.5]))
+    assert numbers["pipe_peak"] == direct.history.pipe_peak
+    assert found.unverified == ()
+    assert any("no margin to design on" in note for note in found.notes)
+    json.dumps(plain(numbers), allow_nan=False)
+    beyond = CASE.with_wind(lift_coefficient=[[1.2e5, 0.4], [1.5e5, 0.4]], record=[[0, 2.6], [30, 4.0]])
+    assert "not extrapolated" in gusts(Work(beyond)).unverified[0]
+
+
+def test_report_shows_wind_and_gusts():
+    from frahm.report.report import render_report
+
+    case = CASE.with_wind(turbulence={"intensity": 0.1, "length_scale": 60.0})
+    work = Work(case)
+    for step in (without_absorber, wind, gusts):
+        work = work.with_section(step(work))
+    kept = analysis_module._concluded(work, False)
+    text = render_report(kept, {})
+    for said in ("Brown &amp; Root 1985", "counter-example", "Griffin and Skop", "secondary", "Unsteady wind",
+                 "plot-unsteady-wind", "Synthetic turbulence"):  # fmt: skip
+        assert said in text, said
+    names = [name for name, _ in drawings(kept.results, kept.data)]
+    assert names == ["unsteady-wind"]
