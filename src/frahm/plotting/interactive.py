@@ -88,11 +88,11 @@ def _add_modulated(figure: go.Figure, modulated: xr.Dataset, quantity: str) -> f
     for stretch in envelopes(modulated, quantity):
         name, hover = MODULATED_NAMES[stretch.stable], "σ %{x:.4f} rad/s<br>%{y:.4g} m"
         look = {"color": GREEN, "width": 1, "dash": "solid" if stretch.stable else "dash"}
-        common: dict[str, Any] = {"x": _small(stretch.x), "mode": "lines", "line": look, "legendgroup": name}
+        common: dict[str, Any] = {"x": single(stretch.x), "mode": "lines", "line": look, "legendgroup": name}
         common |= {"name": name, "hovertemplate": hover}
-        figure.add_scatter(y=_small(stretch.low), showlegend=False, **common)
+        figure.add_scatter(y=single(stretch.low), showlegend=False, **common)
         fill = {"fill": "tonexty", "fillcolor": _MODULATED_FILL} if stretch.stable else {}
-        figure.add_scatter(y=_small(stretch.high), showlegend=stretch.stable not in named, **common, **fill)
+        figure.add_scatter(y=single(stretch.high), showlegend=stretch.stable not in named, **common, **fill)
         named.add(stretch.stable)
         top = max(top, float(np.max(stretch.high)) if stretch.stable else 0.0)
     return top
@@ -106,7 +106,7 @@ def basin_map_plot(data: xr.Dataset) -> go.Figure:
     scale = [[(i + side) / count, entry.colour] for i, entry in enumerate(entries) for side in (0, 1)]
     figure = go.Figure()
     figure.add_heatmap(
-        x=_small(data[across].values), y=_small(data[up].values), z=index.T.astype(np.int8),
+        x=single(data[across].values), y=single(data[up].values), z=index.T.astype(np.int8),
         zmin=-0.5, zmax=count - 0.5, colorscale=scale, showscale=False,
         hovertemplate="%{x:.3g}, %{y:.3g}<extra></extra>",
     )  # fmt: skip
@@ -115,7 +115,7 @@ def basin_map_plot(data: xr.Dataset) -> go.Figure:
         figure.add_scatter(x=[None], y=[None], mode="markers", name=entry.text, marker=mark)
     rest = {"symbol": "cross-thin", "size": 11, "line": {"color": INK, "width": 1.5}}
     figure.add_scatter(x=[0], y=[0], mode="markers", name="rest", marker=rest, hoverinfo="skip")
-    figure.update_layout(**_layout(560))
+    figure.update_layout(**plot_layout(560))
     figure.update_xaxes(title_text=BASIN_AXES[across])
     figure.update_yaxes(title_text=BASIN_AXES[up])
     return figure
