@@ -69,7 +69,7 @@ def response_plot(
         figure.add_scatter(x=x, y=y, mode="lines", line=dotted, name="without absorber")
     top = max([tallest, largest_finite(curve[quantity].values), *_add_motions(figure, motions, quantity)])
     _add_special_points(figure, curve, quantity)
-    figure.updateplot_layout(**plot_layout(520))
+    figure.update_layout(**plot_layout(520))
     figure.update_xaxes(title_text=DETUNING_LABEL)
     figure.update_yaxes(title_text=QUANTITY_LABELS[quantity], title_standoff=8, range=[0, 1.12 * top or 1.0])
     return figure
@@ -134,7 +134,7 @@ def motion_plot(motion: MotionView) -> go.Figure:
             dashed = look | {"dash": "solid" if name == "x1" or row == 3 else "dash"}
             figure.add_scatter(x=single(x), y=single(y), line=dashed, showlegend=False, row=row, col=1, **common)
     decades = [float(np.log10(value)) for value in motion.spectrum_range]
-    figure.updateplot_layout(**plot_layout(760))
+    figure.update_layout(**plot_layout(760))
     figure.update_xaxes(title_text="time [s], whole run", row=1, col=1)
     figure.update_xaxes(title_text="time [s], last periods", row=2, col=1)
     figure.update_xaxes(title_text="frequency [Hz]", range=[0, SHOWN_HARMONICS * motion.frequency_hz], row=3, col=1)
@@ -164,7 +164,7 @@ def manifold_plot(manifold: xr.Dataset, motion: MotionView | None, folds: dict[s
             figure.add_scatter(x=single(Z), y=y, mode="lines", line=look, name=f"slow manifold, {name}")
     if folds:
         _add_folds(figure, folds)
-    figure.updateplot_layout(**plot_layout(460))
+    figure.update_layout(**plot_layout(460))
     figure.update_xaxes(title_text="amplitude of the absorber |Z| [m]", rangemode="tozero")
     figure.update_yaxes(title_text="amplitude of the pipe |X| [m]", range=[0, manifold_height(manifold, motion, folds)])
     return figure
