@@ -66,9 +66,11 @@ def warmup() -> None:
     import time
 
     from frahm.analysis import analyse
+    from frahm.time_integration import unsteady_response
 
     start = time.perf_counter()
     analyse("jacket-pipe")
+    unsteady_response("jacket-pipe", record=([0.0, 1.0], [2.7, 2.7]))
     typer.echo(f"The kernels are compiled and stored; this took {time.perf_counter() - start:.1f} s.")
 
 

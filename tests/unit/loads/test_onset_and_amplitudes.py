@@ -182,6 +182,27 @@ def test_a_simple_span_has_the_factors_of_a_half_sine():
     assert factors.span == "simple span"
 
 
+TABLE_PIPE = {
+    "kind": "modes", "diameter": 0.762, "length": 31.2, "sections": [0, 31.2],
+    "modes": [{"frequency": 4.900885, "mass": 1930.0, "damping_ratio": 0.0015, "lift_length": 12.2,
+               "displacements": [0, 1]}],
+}  # fmt: skip
+
+
+def test_without_a_mass_per_length_nothing_that_needs_it_is_decided():
+    case = frahm.load_case(CASE.to_dict() | {"pipe": TABLE_PIPE, "absorbers": []})
+    found = by_name(case)
+    undecided = {name for name, criterion in found.items() if criterion.expects_vibration is None}
+    assert {"Brown & Root 1985", "DNV 1977", "Moe & Arild 1979", "Statfjord A 1978"} <= undecided
+    estimates = amplitude_estimates(case)
+    assert [math.isnan(row.ratio) for row in estimates.estimates] == [False, True, True, True, True]
+    lift = 0.5 * 0.4535 * 1.225 * 2.7**2 * 0.762 * 12.2
+    assert estimates.interval == pytest.approx([lift / (2 * 1930.0 * 0.0015 * 4.900885**2)] * 2)
+    known = frahm.load_case(CASE.to_dict() | {"pipe": TABLE_PIPE | {"mass_per_length": 247.0}, "absorbers": []})
+    assert by_name(known)["DNV 1977"].expects_vibration is True
+    assert similarity(known).scruton_number == pytest.approx(6.55, abs=5e-3)
+
+
 @pytest.mark.parametrize(
     "make",
     [
