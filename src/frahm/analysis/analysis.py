@@ -13,6 +13,7 @@ import numpy as np
 
 from frahm import __version__
 from frahm.analysis.cross_check import cross_check
+from frahm.analysis.fatigue import fatigue
 from frahm.analysis.gusts import gusts
 from frahm.analysis.linear import without_absorber
 from frahm.analysis.long_term import attractors, worst
@@ -61,6 +62,7 @@ STEPS = (
     Step("attractors at the design wind", attractors),
     Step("basins at the design wind", basins),
     Step("worst case over the window", worst),
+    Step("fatigue over the wind climate", fatigue),
     Step("largest motion", largest_motion),
 )
 

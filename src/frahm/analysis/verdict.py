@@ -78,7 +78,12 @@ def _from_response(work: Work) -> list[dict[str, Any]]:
 
 def verdict(results: dict[str, Any], failed: int, unverified: int) -> str:
     """What the results come to, in two or three sentences."""
-    sentences = [*_about_largest(results), *_about_design_wind(results), *_about_detached(results)]
+    sentences = [
+        *_about_largest(results),
+        *_about_design_wind(results),
+        *_about_detached(results),
+        *_about_fatigue(results),
+    ]
     if failed:
         sentences.append(f"{_count(failed, 'check')} failed.")
     if unverified:
@@ -122,6 +127,22 @@ def _about_detached(results: dict[str, Any]) -> list[str]:
     exact = results.get("response", {}).get("harmonic-balance", {})
     sentence = margin_sentence(exact.get("detached_curve_margin"))
     return [sentence] if sentence else []
+
+
+def _about_fatigue(results: dict[str, Any]) -> list[str]:
+    found = results.get("fatigue")
+    if found is None:
+        return []
+    years, factor = found["duration_years"], found["design_fatigue_factor"]
+    used, bare = found["utilisation_with"], found["utilisation_without"]
+    times = f" times the design fatigue factor {factor:g}" if factor != 1 else ""
+    text = f"The fatigue damage of {years:.3g} years{times} is {used:.2g}"
+    if results["has_absorber"]:
+        text += f" with the worst motion at every wind, {bare:.2g} without absorbers"
+    if not used <= 1:
+        return [f"{text}; that is more than 1."]
+    held = factor * found["locked_in_with"]
+    return [f"{text}; {held:.2g} if the shedding locked in over the whole lock-in band at the worst of it."]
 
 
 def _length(value: float) -> str:

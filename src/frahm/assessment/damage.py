@@ -33,8 +33,10 @@ class FatigueDamage:
     damage_without : float
         Without absorbers, closed form [-].
     locked_in_with, locked_in_without : float
-        If at every wind of the band the pipe moved as it does at the worst of them [-]: lock-in can hold the shedding
-        at the natural frequency over a whole band of speeds, which the forced model does not know.
+        If at every wind of the lock-in band the pipe moved as it does at the worst of them [-]: lock-in can hold the
+        shedding at the natural frequency over a whole band of speeds, which the forced model does not know. Secondary.
+    lock_in : (float, float)
+        That band [m/s].
     outside_without : float
         Damage by winds outside the band, without absorbers [-]; not part of the others.
     speeds, lower, upper : ndarray, shape (b,)
@@ -56,7 +58,7 @@ class FatigueDamage:
     binning : float
         Relative change of `damage_with` if the rates are linear between the middles instead of even in each bin.
     persistence : Persistence
-        How long the wind stays in the band, against the time the response needs to build up; secondary.
+        How long the wind stays in the lock-in band, against the time the response needs to build up; secondary.
     stress_range_without : float
         Hot-spot stress range of the resonance in the band without absorbers [Pa].
     section : float or None
@@ -73,6 +75,7 @@ class FatigueDamage:
     locked_in_with: float
     locked_in_without: float
     outside_without: float
+    lock_in: tuple[float, float]
     speeds: Floats
     lower: Floats
     upper: Floats

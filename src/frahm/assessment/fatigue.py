@@ -18,7 +18,15 @@ from frahm.assessment.wind_survey import WindSurvey
 from frahm.case import Case, load_case
 from frahm.errors import check_count
 from frahm.harmonic_balance import is_linear
-from frahm.loads import WindClimate, WindExcitation, persistence, speed_window, wind_climate, wind_excitation
+from frahm.loads import (
+    WindClimate,
+    WindExcitation,
+    lock_in_band,
+    persistence,
+    speed_window,
+    wind_climate,
+    wind_excitation,
+)
 from frahm.systems import build_system
 
 _CALM, _STORM = 1e-3, 200.0  # speeds between which wind is looked for [m/s]
@@ -156,7 +164,8 @@ def _result(
     bare_detail = _bare_detail(detail, case)
     excitation, speeds = wind_excitation(case), middles(edges)
     chances = np.asarray(climate.probability(edges[:-1], edges[1:]))
-    T, band = climate.duration, float(np.asarray(climate.probability(edges[0], edges[-1])))
+    T, lock_in = climate.duration, _lock_in(case, edges)
+    held = float(np.asarray(climate.probability(*lock_in)))
     without, range_without = _closed_form(bare, bare_detail, climate, edges)
     none = np.zeros(speeds.size)
     binning = 0.0
@@ -171,18 +180,18 @@ def _result(
         total = float(np.sum(bin_with))
         between = T * interpolated_damage(speeds, rates, edges, chances)
         binning = abs(between - total) / total if 0 < total < math.inf else 0.0
-        locked = T * band * float(np.max(rates, initial=0.0))
+        locked = T * held * float(np.max(rates, initial=0.0))
     else:
         bin_with, ranges = _closed_form(linear, detail, climate, edges)
         bin_weighted, number, unsettled, kinds = bin_with, none + 1, none, ("linear",) * speeds.size
-        locked = _locked_in(linear, detail, climate, edges, band)
+        locked = _locked_in(linear, detail, climate, edges, held)
     growth = case.pipe.damping_ratio * case.pipe.frequency
     known: dict[str, Any] = dict(  # noqa: C408 keyword by keyword, as the result takes them
         damage_with=float(np.sum(bin_with)),
         damage_with_weighted=float(np.sum(bin_weighted)),
         damage_without=float(np.sum(without)),
         locked_in_with=locked,
-        locked_in_without=_locked_in(bare, bare_detail, climate, edges, band),
+        locked_in_without=_locked_in(bare, bare_detail, climate, edges, held),
         outside_without=_outside(bare, bare_detail, climate, edges),
         speeds=frozen(speeds), lower=frozen(edges[:-1]), upper=frozen(edges[1:]),
         frequencies=frozen(excitation.frequency(speeds)),
@@ -190,9 +199,9 @@ def _result(
         probabilities=frozen(chances), bin_with=frozen(bin_with), bin_weighted=frozen(bin_weighted),
         bin_without=frozen(without), range_with=frozen(ranges), range_without=frozen(range_without), kinds=kinds,
         attractors=frozen(number, dtype=np.int64), unsettled=frozen(unsettled), binning=binning,
-        persistence=persistence(climate, edges[0], edges[-1], 1 / growth if growth > 0 else math.inf),
+        persistence=persistence(climate, lock_in[0], lock_in[1], 1 / growth if growth > 0 else math.inf),
         stress_range_without=float(np.max(range_without, initial=0.0)), section=detail.section, case=case,
-        settings=_settings(survey, climate),
+        lock_in=lock_in, settings=_settings(survey, climate),
     )  # fmt: skip
     return FatigueDamage(**known, unverified=doubts_of(known, survey, bare, linear), notes=notes_of(known, survey))
 
@@ -212,8 +221,16 @@ def _closed_form(pipe: LinearPipe | None, detail: Detail, climate: WindClimate, 
     return linear_damage(pipe, detail, climate, edges)
 
 
+def _lock_in(case: Case, edges: Floats) -> tuple[float, float]:
+    """Wind speeds over which the shedding may lock in [m/s]; the band counted where tables do not tell."""
+    band = lock_in_band(case)
+    if math.isfinite(band.low) and math.isfinite(band.high) and band.low < band.high:
+        return band.low, band.high
+    return float(edges[0]), float(edges[-1])
+
+
 def _locked_in(pipe: LinearPipe | None, detail: Detail, climate: WindClimate, edges: Floats, chance: float) -> float:
-    """Damage if all winds of the band did what the worst of them does."""
+    """Damage if the pipe did what it does at the worst wind in a share `chance` of the time."""
     if pipe is None or not pipe.decays:
         return 0.0 if pipe is None else math.inf
     speeds = np.concatenate([np.linspace(edges[0], edges[-1], 4001)]

@@ -72,7 +72,7 @@ def _periodic(system: System, attractor: Attractor, detail: Detail) -> MotionDam
     )  # fmt: skip
     if not history.outcome.ok:
         return MotionDamage(float("nan"), float("nan"), float("nan"), multiple)
-    points = stress_points(history, detail)[:-1]
+    points = stress_points(history, detail)[:-1]  # the last value is the first one again
     first = int(np.argmax(points))
     closed = np.concatenate([points[first:], points[: first + 1]])
     cycles = rainflow_cycles(closed)

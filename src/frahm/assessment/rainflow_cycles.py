@@ -76,6 +76,11 @@ def turning_points(values: ArrayLike, slopes: ArrayLike, spacing: float) -> Floa
         raise ParameterError("slopes", f"{v.size} of them", f"{x.size}, one per value")
     if x.size < 2:
         return x
+    return _reversals(_with_extremes(x, v))
+
+
+def _with_extremes(x: Floats, v: Floats) -> Floats:
+    """Samples and, between them, the extremes of the cubic through values x and slopes v per step."""
     rise, first, last = np.diff(x), v[:-1], v[1:]
     # x(s) = x_0 + v_0 s + b s^2 + a s^3 on [0, 1]; its extremes are zeros of v_0 + 2 b s + 3 a s^2.
     a, b = first + last - 2 * rise, 3 * rise - 2 * first - last
@@ -89,3 +94,11 @@ def turning_points(values: ArrayLike, slopes: ArrayLike, spacing: float) -> Floa
     extremes = np.where(inside, x[:-1] + s * (first + s * (b + s * a)), np.nan)
     ordered = np.column_stack([x[:-1], extremes[0], extremes[1]]).ravel()
     return np.append(ordered[np.isfinite(ordered)], x[-1])
+
+
+def _reversals(values: Floats) -> Floats:
+    """First value, those at which the direction changes, last value; plateaus count once."""
+    moving = values[np.append(True, np.diff(values) != 0)]
+    rises = np.diff(moving) > 0
+    turns = np.flatnonzero(rises[1:] != rises[:-1]) + 1
+    return moving[np.unique(np.concatenate([[0], turns, [moving.size - 1]]))]

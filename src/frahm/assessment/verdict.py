@@ -46,14 +46,17 @@ def notes_of(known: Mapping[str, Any], survey: WindSurvey) -> tuple[str, ...]:
     """Limits of what was counted."""
     fatigue, stay = fatigue_section(survey.case), known["persistence"]
     notes = [
-        "The damage is that of vortex shedding in the band of wind speeds, at frequencies that follow the wind."
-        " Lock-in can hold the shedding at the natural frequency over the whole band: then the damage would be up to"
-        f" {known['locked_in_with']:.3g} with absorbers and {known['locked_in_without']:.3g} without.",
+        "The damage is that of vortex shedding in the band of wind speeds, at frequencies that follow the wind. Lock-in"
+        " can hold the shedding at the natural frequency from {:.3g} to {:.3g} m/s (secondary): did the pipe move there"
+        " as it does at its worst wind, the damage would be {:.3g} with absorbers and {:.3g} without.".format(
+            *known["lock_in"], known["locked_in_with"], known["locked_in_without"]
+        ),
         f"The S-N curve {fatigue.curve} is that of DNV-RP-C203 (2016) in air, read in a reproduction of its table;"
         " reference thicknesses and the formula for Weibull distributed ranges are secondary.",
         "The steady motion is counted as if it had always built up. By a simple model with an assumed correlation time"
-        f" the wind stays in the band for {stay.mean_stay:.3g} s on average, and {stay.share_built_up:.0%} of the time"
-        f" in it belong to stays with {stay.build_up:.3g} s still to come, which the build-up takes (secondary).",
+        f" the wind stays in the lock-in band for {stay.mean_stay:.3g} s on average, and {stay.share_built_up:.0%} of"
+        f" the time in it belong to stays with {stay.build_up:.3g} s still to come, which the build-up takes"
+        " (secondary).",
     ]
     if "design_fatigue_factor" not in fatigue.model_fields_set:
         notes.append("The design fatigue factor was left at 1; rules ask for up to 10 (secondary).")
@@ -83,10 +86,15 @@ def _uncounted(found: list[WindFindings]) -> list[str]:
 
 def _drifting(found: list[WindFindings]) -> list[str]:
     top = max((one.worst_rate for one in found if np.isfinite(one.worst_rate)), default=0.0)
-    winds = [one for one in found if any(not e.settled and e.rate > _COUNTS * top for e in one.damage)]
+    drifts: dict[float, float] = {}
+    for one in found:
+        for attractor, entry in zip(one.found, one.damage, strict=True):
+            if attractor.kind != "unsettled" and not entry.settled and entry.rate > _COUNTS * top:
+                drifts[one.speed] = max(drifts.get(one.speed, 0.0), entry.scatter)
+    winds = [one for one in found if one.speed in drifts]
     if not winds:
         return []
-    scatter = max(entry.scatter for one in winds for entry in one.damage if entry.rate > _COUNTS * top)
+    scatter = max(drifts.values())
     return [
         f"{_where(winds)} the damage per time of a motion that does not repeat still changes by {scatter:.1%} between"
         f" the halves of its history ({SETTLED:.0%} is allowed)."

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from frahm.plotting.basins import basin_map_figure
+from frahm.plotting.fatigue import fatigue_figure
 from frahm.plotting.static import manifold_figure, motion_figure, response_figure
 from frahm.plotting.style import figure_style, save_figure
 from frahm.plotting.views import motion_views, trajectory_to_show
@@ -51,3 +52,5 @@ def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[D
         yield "slow-manifold", partial(manifold_figure, data["slow_manifold"], trajectory_to_show(views), folds)
     if "basin_map" in data:
         yield "basin-map", partial(basin_map_figure, data["basin_map"])
+    if "fatigue" in data:
+        yield "fatigue", partial(fatigue_figure, data["fatigue"])

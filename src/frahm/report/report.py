@@ -15,11 +15,12 @@ from markupsafe import Markup
 from frahm.analysis import Analysis, margin_sentence
 from frahm.errors import ParameterError
 from frahm.files import write_text
+from frahm.plotting.fatigue import fatigue_plot
 from frahm.plotting.gallery import save_figures
 from frahm.plotting.interactive import CONFIG, basin_map_plot, manifold_plot, motion_plot, response_plot
 from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
 from frahm.plotting.wind import gusts_plot
-from frahm.report import tables
+from frahm.report import fatigue_tables, tables
 
 REPORT_FILE = "report.html"
 _MOST_MOTIONS = 8
@@ -76,6 +77,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         results=analysis.results,
         margin=margin_of(analysis.results),
         tables=tables,
+        fatigue_tables=fatigue_tables,
         views=views[:_MOST_MOTIONS],
         more_motions=max(0, len(views) - _MOST_MOTIONS),
         plots=plots,
@@ -108,6 +110,8 @@ def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
         figures["slow-manifold"] = manifold_plot(data["slow_manifold"], trajectory_to_show(views), folds)
     if "basin_map" in data:
         figures["basin-map"] = basin_map_plot(data["basin_map"])
+    if "fatigue" in data:
+        figures["fatigue"] = fatigue_plot(data["fatigue"])
     return {name: Markup(_inside_script(figure)) for name, figure in figures.items()}
 
 

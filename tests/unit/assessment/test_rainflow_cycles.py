@@ -11,9 +11,8 @@ def test_peaks_of_a_sine_between_its_samples(per_period):
     step = 2 * np.pi / per_period
     t = (np.arange(10 * per_period + 1) + 0.37) * step
     points = turning_points(np.sin(t), np.cos(t), step)
-    peaks = points[1:-1][(points[1:-1] > points[:-2]) & (points[1:-1] > points[2:])]
-    assert peaks.size == 10
-    assert np.max(np.abs(peaks - 1)) < step**4 / 384  # the error of cubic Hermite interpolation
+    assert points.size == 22  # ten maxima, ten minima, both ends
+    assert np.max(np.abs(np.abs(points[1:-1]) - 1)) < step**4 / 384  # the error of cubic Hermite interpolation
 
 
 def test_two_extremes_between_two_samples():
@@ -24,9 +23,9 @@ def test_two_extremes_between_two_samples():
 
 
 def test_a_constant_and_a_straight_line_have_no_turning_points():
-    assert turning_points([2.0, 2.0, 2.0], [0, 0, 0], 0.1).tolist() == [2.0, 2.0, 2.0]
+    assert turning_points([2.0, 2.0, 2.0], [0, 0, 0], 0.1).tolist() == [2.0]
     assert rainflow_cycles([2.0, 2.0, 2.0]).power_sum(3) == 0
-    assert turning_points([0.0, 1.0, 2.0], [1, 1, 1], 1.0).tolist() == [0.0, 1.0, 2.0]
+    assert turning_points([0.0, 1.0, 2.0], [1, 1, 1], 1.0).tolist() == [0.0, 2.0]
 
 
 @pytest.mark.parametrize("stress", [20e6, 49.2e6, 52.63e6, 120e6])

@@ -1,0 +1,101 @@
+"""Rows of the tables on fatigue in a report, as text ready to be read."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from frahm.analysis import Analysis
+from frahm.report.tables import number
+
+BIN_HEAD = [
+    "Wind [m/s]", "σ [rad/s]", "Share of the time", "Stress range with [MPa]", "without [MPa]", "Motion", "Attractors",
+    "Damage with", "weighted", "without",
+]  # fmt: skip
+_MPA = 1e6
+_CASE, _COMPUTED = "given in the case", "computed"
+_KINDS = {"quasi-periodic": "modulated"}
+
+
+def method_sentence(analysis: Analysis) -> str:
+    """What was counted and how."""
+    found = _found(analysis)
+    low, high = found["wind_speeds"]
+    return (
+        f"Palmgren-Miner damage over {number(found['duration_years'])} years by the vortices of winds from"
+        f" {number(low)} to {number(high)} m/s, in {found['bins']} bins. At every wind each lasting motion was followed"
+        f" and its stress cycles counted by the rainflow method ({analysis.data['fatigue'].attrs['rainflow']}); curve"
+        f" {found['curve']} of DNV-RP-C203 in air. Without absorbers the response is known in closed form."
+    )
+
+
+def damage_rows(analysis: Analysis) -> list[tuple[str, str, str]]:
+    """Name, value with, value without absorbers."""
+    found = _found(analysis)
+    factor = number(found["design_fatigue_factor"])
+    return [
+        ("Damage, worst motion at every wind", _damage(found["damage_with"]), _damage(found["damage_without"])),
+        ("Damage, motions weighted by their basins", _damage(found["damage_with_weighted"]), ""),
+        (f"Times the design fatigue factor {factor}", _damage(found["utilisation_with"]),
+         _damage(found["utilisation_without"])),
+        ("Life until that is 1 [years]", _life(found["life_years"]), _life(found["life_years_without"])),
+        ("Damage if locked in over the whole band (secondary)", _damage(found["locked_in_with"]),
+         _damage(found["locked_in_without"])),
+        ("Damage by winds outside the bins, not counted above", "", _damage(found["outside_without"])),
+    ]  # fmt: skip
+
+
+def detail_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
+    """Quantity, value, unit, standing."""
+    found, stay = _found(analysis), _found(analysis)["persistence"]
+    attributes = analysis.data["fatigue"].attrs
+    low, high = found["lock_in"]
+    rows = [
+        ("S-N curve", str(found["curve"]), "", f"table read at second hand: {attributes['sn_curve_source']}"),
+        ("Stress factor: concentration times thickness", number(float(attributes["stress_factor"])), "",
+         "exponent as the curve, reference thickness secondary"),
+        ("Largest hot-spot stress range with absorbers", _stress(found["stress_range_with"]), "MPa", _COMPUTED),
+        ("Largest hot-spot stress range without", _stress(found["stress_range_without"]), "MPa", _COMPUTED),
+        ("Lock-in band", f"{number(low)} … {number(high)}", "m/s", "secondary"),
+        ("Share of the time in the lock-in band", number(stay["probability"], 3), "", "computed from the climate"),
+        ("Mean stay of the wind in it", number(stay["mean_stay"], 3), "s", "secondary: a simple model"),
+        ("Time the response needs to build up", number(stay["build_up"], 3), "s", _COMPUTED),
+        ("Share of that time in stays that go on as long", number(stay["share_built_up"], 2), "", "secondary"),
+    ]  # fmt: skip
+    if found["section"] is not None:
+        rows.insert(1, ("Section of the pipe", number(float(found["section"])), "m", _COMPUTED))
+    return rows
+
+
+def bin_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Every wind bin."""
+    data = analysis.data["fatigue"]
+    kinds = data["kind"].attrs["kinds"].split(", ")
+    columns: dict[str, Any] = {str(name): data[name].values for name in data}
+    rows: list[tuple[str, ...]] = []
+    for i, code in enumerate(columns["kind"]):
+        rows.append(
+            (
+                f"{columns['speed_lower'][i]:.4g} … {columns['speed_upper'][i]:.4g}", f"{columns['detuning'][i]:.3f}",
+                number(float(columns["probability"][i]), 3), _stress(float(columns["stress_range_with"][i])),
+                _stress(float(columns["stress_range_without"][i])), _KINDS.get(kinds[code], kinds[code]),
+                str(int(columns["attractors"][i])), _damage(float(columns["damage_with"][i])),
+                _damage(float(columns["damage_with_weighted"][i])), _damage(float(columns["damage_without"][i])),
+            )
+        )  # fmt: skip
+    return rows
+
+
+def _found(analysis: Analysis) -> dict[str, Any]:
+    return dict(analysis.results["fatigue"])
+
+
+def _damage(value: float | None) -> str:
+    return "unbounded" if value is None or value == float("inf") else number(float(value), 3)
+
+
+def _life(value: float | None) -> str:
+    return "endless" if value is None or value == float("inf") else number(float(value), 3)
+
+
+def _stress(value: float | None) -> str:
+    return "unbounded" if value is None or value == float("inf") else number(float(value) / _MPA, 3)
