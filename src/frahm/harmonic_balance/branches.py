@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy.linalg
 
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Floats
@@ -24,6 +25,7 @@ from frahm.harmonic_balance.seeds import (
     single_element_seeds,
     spring_polynomial,
     stiffness_at,
+    two_harmonic_seeds,
 )
 from frahm.systems import System
 
@@ -34,6 +36,8 @@ _LONGEST = 0.02
 _SEED_FREQUENCIES = 17
 _QUICK = 0.2  # way of a multiplier near the unit circle from point to point that asks for a point between
 _GRID = 401
+_STRONG_FREQUENCIES = 9
+_STRONG_THIRD = 0.12  # third harmonic beside the first from where on both are searched together
 
 
 @dataclass
@@ -165,15 +169,36 @@ def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
     seeds = [seed for W in complete_at for seed in _seeds_at(pb, float(W), e, search.x_scale, odd)]
     seeds += [seed for W in beside for seed in _seeds_at(pb, float(W), e, search.x_scale, odd) if 3 in seed.harmonics]
     seeds += [seed for W in almost for seed in almost_seeds(pb, float(W), e[1])] if e is not None else []
-    for seed in seeds:
-        start = solve_seed(search, seed, odd)
-        if start is None or any(_lies_on(search, track, *start) for track in tracks):
-            continue
-        tracks.append(_followed(search, odd, *start))
+    _follow_new(search, seeds, tracks)
+    if e is not None and odd and _third_harmonic(search, tracks) > _STRONG_THIRD:
+        spread = np.linspace(search.lo, search.hi, _STRONG_FREQUENCIES)
+        _follow_new(search, [seed for W in spread for seed in two_harmonic_seeds(pb, float(W), e)], tracks)
     tracks = [track for track in tracks if complete(search, track)]
     for track in list(tracks) if asymmetric else []:
         tracks += asymmetric_branches(search, track, tracks)
     return sorted(tracks, key=lambda track: _response_at(track, search.lo))
+
+
+def _follow_new(search: Search, seeds: list[Seed], tracks: list[Track]) -> None:
+    """Follow the branches of all starts that do not lie on one already followed, and add them."""
+    odd = search.problem.odd
+    for seed in seeds:
+        start = solve_seed(search, seed, odd)
+        if start is not None and not any(_lies_on(search, track, *start) for track in tracks):
+            tracks.append(_followed(search, odd, *start))
+
+
+def _third_harmonic(search: Search, tracks: list[Track]) -> float:
+    """Largest third harmonic of a single element beside its first, on the symmetric branches in the window."""
+    ratios = [0.0]
+    for track in tracks:
+        inside = (track.frequency >= search.lo) & (track.frequency <= search.hi) & (track.Hs >= 3)
+        first, third = (
+            np.hypot(track.ys[inside, 0], track.ys[inside, 1]),
+            np.hypot(track.ys[inside, 2], track.ys[inside, 3]),
+        )
+        ratios.append(float(np.max(third / np.maximum(first, 1e-300), initial=0.0)))
+    return max(ratios)
 
 
 def _response_at(track: Track, W: float) -> float:
@@ -199,25 +224,42 @@ def solve_seed(search: Search, seed: Seed, odd: bool) -> tuple[Floats, int] | No
 
 
 def _lies_on(search: Search, track: Track, y: Floats, H: int) -> bool:
-    """Whether a solution is a point of a branch already followed: compared at its own frequency after Newton."""
-    pb, odd = search.problem, track.odd
-    n = unknowns(pb, H, odd)
-    W = y[n]
-    crossing = np.flatnonzero((track.frequency[:-1] - W) * (track.frequency[1:] - W) <= 0)
-    for i in crossing:
-        a, b = track.frequency[i], track.frequency[i + 1]
-        f = 0.5 if a == b else (W - a) / (b - a)
-        na, nb = unknowns(pb, track.Hs[i], odd), unknowns(pb, track.Hs[i + 1], odd)
-        guess = np.zeros(search.size(odd))
-        guess[:na] += (1 - f) * track.ys[i, :na]
-        guess[:nb] += f * track.ys[i + 1, :nb]
-        leap = np.linalg.norm(track.ys[i + 1, : min(na, nb)] - track.ys[i, : min(na, nb)])
-        if np.linalg.norm(guess[:n] - y[:n]) > 3 * leap + 0.05 * np.linalg.norm(y[:n]):
-            continue
-        ok, _, _ = solve_at(pb, odd, W, guess, max(H, track.Hs[i]), search.highest, math.inf, 15)
-        if ok and np.linalg.norm(guess[:n] - y[:n]) < 1e-5 * np.linalg.norm(y[:n]) + 1e-12 * search.x_scale:
-            return True
-    return False
+    """Whether a solution is a point of a branch already followed: compared in its own plane across the chord of a step.
+
+    Only steps that reach its frequency are looked at, or in which the frequency turns.
+    """
+    n = unknowns(search.problem, H, track.odd)
+    beyond = track.frequency - y[n]
+    rise = track.ts[np.arange(len(track.Hs)), unknowns(search.problem, track.Hs, track.odd)]
+    steps = np.flatnonzero((beyond[:-1] * beyond[1:] <= 0) | (rise[:-1] * rise[1:] < 0))
+    return any(_lies_in_step(search, track, y, n, int(i)) for i in steps)
+
+
+def _lies_in_step(search: Search, track: Track, y: Floats, n: int, i: int) -> bool:
+    """Whether a solution is the point of the branch in its own plane across the chord of step i."""
+    scales = np.append(np.full(n, search.x_scale), search.w_scale)
+    a, b = (_with_unknowns(search, track, k, n) / scales for k in (i, i + 1))
+    here, chord = y[: n + 1] / scales - a, b - a
+    length = float(np.linalg.norm(chord))
+    if length == 0.0:  # the branch was outside the window in between
+        return False
+    fraction = float(here @ chord) / length**2
+    if not -0.01 <= fraction <= 1.01 or np.linalg.norm(here - fraction * chord) > 0.5 * length:
+        return False
+    point = _midpoint(search, track, i, fraction)
+    if point is None:
+        return False
+    found, own = np.zeros(n + 1), unknowns(search.problem, point[2], track.odd)
+    found[: min(n, own)], found[n] = point[0][: min(n, own)], point[0][own]
+    return bool(np.linalg.norm((found - y[: n + 1]) / scales) < 1e-5 * np.linalg.norm(y[:n]) / search.x_scale)
+
+
+def _with_unknowns(search: Search, track: Track, i: int, n: int) -> Floats:
+    """A point of a branch with `n` unknowns before Omega."""
+    own = unknowns(search.problem, track.Hs[i], track.odd)
+    point = np.zeros(n + 1)
+    point[: min(n, own)], point[n] = track.ys[i, : min(n, own)], track.ys[i, own]
+    return point
 
 
 def _followed(search: Search, odd: bool, y: Floats, H: int) -> Track:
@@ -247,7 +289,7 @@ def _track(
 ) -> Track:
     ys, ts, Hs, truncations = (np.concatenate(column) for column in zip(*parts, strict=True))
     columns = np.zeros((len(Hs), 5))
-    columns[:, 0] = ys[np.arange(len(Hs)), [unknowns(search.problem, H, odd) for H in Hs]]
+    columns[:, 0] = ys[np.arange(len(Hs)), unknowns(search.problem, Hs, odd)]
     return Track(odd, ys, ts, Hs, truncations, columns, np.zeros((0, 0)), closed, endings)
 
 
@@ -338,9 +380,8 @@ def _asymmetric_start(search: Search, y: Floats, _: Floats, H: int) -> tuple[Flo
     R, J, A = np.empty(n + 1), np.empty((n + 1, n + 1)), np.empty((n + 1, n + 1))
     tables = fourier_tables(H, False, sample_count(pb, H, False))
     residual_and_jacobian(pb, H, False, full[n], full, *tables, R, J)
-    null = np.linalg.svd(J[:n, :n])[2][-1]
     normal = np.zeros(n + 1)
-    normal[:n] = null / np.linalg.norm(null)
+    normal[:n] = _null_vector(J[:n, :n])
     for push in (0.02, 0.005, 0.05):
         trial = full.copy()
         trial[:n] += push * search.x_scale * normal[:n]
@@ -352,6 +393,15 @@ def _asymmetric_start(search: Search, y: Floats, _: Floats, H: int) -> tuple[Flo
         if ok and np.linalg.norm(_even_part(search, trial, H)) > 0.3 * push * search.x_scale:
             return trial, H
     return None
+
+
+def _null_vector(J: Floats) -> Floats:
+    """Unit vector that a nearly singular matrix maps to nearly nothing, by inverse iteration."""
+    factors = scipy.linalg.lu_factor(J + 1e-14 * np.linalg.norm(J) * np.eye(len(J)), check_finite=False)
+    null = np.random.default_rng(1).standard_normal(len(J))
+    for _ in range(3):
+        null = scipy.linalg.lu_solve(factors, null / np.linalg.norm(null), check_finite=False)
+    return np.asarray(null / np.linalg.norm(null))
 
 
 def _even_part(search: Search, y: Floats, H: int) -> Floats:
@@ -390,23 +440,32 @@ def _half_of_pair(search: Search, track: Track) -> Track:
 def _trim(search: Search, track: Track) -> None:
     """Cut a branch to the window, with points exactly on its edges; pieces stay in order along the branch."""
     W = track.frequency
-    rows: list[tuple[Floats, Floats, int, float]] = []
-    for i in range(len(W)):
-        if search.lo <= W[i] <= search.hi:
-            rows.append((track.ys[i], track.ts[i], track.Hs[i], track.truncations[i]))
-        if i + 1 < len(W):
-            crossed = [edge for edge in (search.lo, search.hi) if (W[i] - edge) * (W[i + 1] - edge) < 0]
-            for edge in sorted(crossed, key=lambda value: abs(value - W[i])):
-                rows.append((*_on_edge(search, track, i, edge), track.truncations[i]))
-    track.ys, track.ts = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
-    track.Hs, track.truncations = np.array([row[2] for row in rows]), np.array([row[3] for row in rows])
-    W = track.ys[np.arange(len(rows)), [unknowns(search.problem, H, track.odd) for H in track.Hs]]
-    track.columns = np.column_stack([W, np.zeros((len(rows), 4))])
+    inside = np.flatnonzero((search.lo <= W) & (search.hi >= W))
+    steps, edges = _edges_crossed(W, (search.lo, search.hi))
+    at = np.searchsorted(inside, steps, side="right")
+    points = [_on_edge(search, track, int(i), float(edge)) for i, edge in zip(steps, edges, strict=True)]
+    whole = (track.ys, track.ts, track.Hs, track.truncations)
+    track.ys, track.ts, track.Hs, track.truncations = (part[inside] for part in whole)
+    if points:
+        track.ys = np.insert(track.ys, at, np.array([point[0] for point in points]), axis=0)
+        track.ts = np.insert(track.ts, at, np.array([point[1] for point in points]), axis=0)
+        track.Hs = np.insert(track.Hs, at, [point[2] for point in points])
+        track.truncations = np.insert(track.truncations, at, whole[3][steps])
+    W = track.ys[np.arange(len(track.Hs)), unknowns(search.problem, track.Hs, track.odd)]
+    track.columns = np.column_stack([W, np.zeros((len(W), 4))])
     gaps = np.flatnonzero((W[:-1] == W[1:]) & ((W[1:] == search.lo) | (W[1:] == search.hi))) + 1
     if track.closed and gaps.size:  # begin where the branch comes into the window, not in the middle of a piece
-        order = np.concatenate([np.arange(gaps[0], len(rows)), np.arange(1, gaps[0])])
+        order = np.concatenate([np.arange(gaps[0], len(W)), np.arange(1, gaps[0])])
         track.ys, track.ts, track.Hs = track.ys[order], track.ts[order], track.Hs[order]
         track.truncations, track.columns = track.truncations[order], track.columns[order]
+
+
+def _edges_crossed(W: Floats, edges: tuple[float, float]) -> tuple[np.ndarray, Floats]:
+    """Steps of a branch that cross an edge of the window, and the edge, in order along the branch."""
+    steps = np.concatenate([np.flatnonzero((W[:-1] - edge) * (W[1:] - edge) < 0) for edge in edges])
+    crossed = np.repeat(edges, [np.count_nonzero((W[:-1] - edge) * (W[1:] - edge) < 0) for edge in edges])
+    order = np.lexsort([np.abs(crossed - W[steps]), steps])
+    return steps[order], crossed[order]
 
 
 def _on_edge(search: Search, track: Track, i: int, edge: float) -> tuple[Floats, Floats, int]:

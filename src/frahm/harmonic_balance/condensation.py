@@ -11,7 +11,7 @@ elements belong to C and K. At harmonic 0 a sink without linear spring has S = 0
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.linalg
@@ -51,9 +51,9 @@ class Problem(NamedTuple):
     odd: bool  # whether every law is odd, so that odd harmonics form a closed set
 
 
-def unknowns(problem: Problem, H: int, odd: bool) -> int:
-    """Length of the unknown vector with harmonics up to H, for callers outside compiled code."""
-    return 2 * problem.M11.shape[0] * int((H + 1) // 2 if odd else H + 1)
+def unknowns(problem: Problem, H: Any, odd: bool) -> Any:
+    """Length of the unknown vector with harmonics up to H (a number or an array), for callers outside compiled code."""
+    return 2 * problem.M11.shape[0] * ((H + 1) // 2 if odd else H + 1)
 
 
 def condense(system: System) -> Problem:

@@ -57,8 +57,7 @@ def unstable_count(multipliers: np.ndarray) -> np.ndarray:
 
 def is_eventful(search: Search, track: Track) -> np.ndarray:
     """For every step of a branch whether stability or direction changes in it."""
-    ends = [unknowns(search.problem, H, track.odd) for H in track.Hs]
-    rise = track.ts[np.arange(len(ends)), ends]
+    rise = track.ts[np.arange(len(track.Hs)), unknowns(search.problem, track.Hs, track.odd)]
     unstable = unstable_count(track.multipliers)
     gap = track.frequency[:-1] == track.frequency[1:]  # the branch was outside the window in between
     return np.asarray(((rise[:-1] * rise[1:] < 0) | (unstable[:-1] != unstable[1:])) & ~gap)

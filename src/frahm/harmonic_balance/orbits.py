@@ -20,7 +20,7 @@ def peak_of(x, H, odd):
     h = (math.pi if odd else 2.0 * math.pi) / N
     size, best, at = np.empty(N), 0.0, 0
     for j in range(N):
-        size[j] = abs(_series(x, H, first, step, h * j)[0])
+        size[j] = abs(_value(x, H, first, step, h * j))
         if size[j] > best:
             best, at = size[j], j
     highest = best
@@ -42,6 +42,17 @@ def peak_of(x, H, odd):
                 break
             tau = tau + move if lo < tau + move < hi else 0.5 * (lo + hi)
     return highest
+
+
+@kernel
+def _value(x, H, first, step, tau):
+    value = 0.0
+    c1, s1 = math.cos(step * tau), math.sin(step * tau)
+    c, s = math.cos(first * tau), math.sin(first * tau)
+    for k in range(first, H + 1, step):
+        value += x[k].real * c - x[k].imag * s
+        c, s = c * c1 - s * s1, s * c1 + c * s1
+    return value
 
 
 @kernel

@@ -19,7 +19,7 @@ from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of
 from frahm.systems import System
 
-_NEIGHBOURHOOD = 0.03
+_NEIGHBOURHOOD = 0.12
 _FINE_GOAL = 1e-11
 
 

@@ -22,6 +22,7 @@ from frahm.harmonic_balance.newton import solve_at
 from frahm.polynomials import universal_roots
 
 _STARTS = 48
+_TWO_HARMONIC_STARTS = 16
 
 
 @dataclass(frozen=True)
@@ -153,6 +154,27 @@ def _third_harmonics(S3: complex, Z: complex, e: Floats) -> list[complex]:
     shifted, drive = S3 + e[0] + 2 * k * abs(Z) ** 2, -k * Z**3 / 3
     count, *roots = cubic_roots(shifted, drive, k)
     return [drive / (shifted + k * N) for N in roots[:count]] if count > 1 else []
+
+
+def two_harmonic_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
+    """Solutions with harmonics 1 and 3 of one element, searched by Newton's method from a fixed spread of starts.
+
+    Where the third harmonic is strong it changes the first, and solutions exist that no first-harmonic root leads to.
+    """
+    S, F = stiffness_at(pb, 1, W)
+    radius = math.sqrt(np.max(amplitude_roots(S[0, 0], F[0], e), initial=0.0))
+    sample = qmc.Halton(4, seed=1).random(_TWO_HARMONIC_STARTS)
+    first = radius * (0.5 + 0.8 * sample[:, 0]) * np.exp(2j * np.pi * sample[:, 1])
+    third = radius * 0.6 * sample[:, 2] * np.exp(2j * np.pi * sample[:, 3])
+    found: list[Complexes] = []
+    for start in np.stack([first, third], axis=1):
+        X = np.zeros(unknowns(pb, 3, True) + 1)
+        X[:4] = start.real[0], start.imag[0], start.real[1], start.imag[1]
+        ok, _, _ = solve_at(pb, True, W, X, 3, 3, math.inf, 20)
+        u = X[:4:2] + 1j * X[1:4:2]
+        if ok and not any(np.max(np.abs(u - other)) < 1e-6 * np.max(np.abs(u)) for other in found):
+            found.append(u)
+    return [Seed(W, {1: u[:1], 3: u[1:]}) for u in found]
 
 
 def searched_seeds(pb: Problem, W: float, scale: float, odd: bool) -> list[Seed]:
