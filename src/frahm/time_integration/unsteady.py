@@ -12,77 +12,25 @@ from numpy.typing import ArrayLike
 from frahm.arrays import Floats, finite_array, frozen, labelled
 from frahm.case import Case, load_case
 from frahm.errors import ConvergenceError, Outcome, ParameterError, check_count, check_number
-from frahm.loads import WindExcitation, wind_excitation
+from frahm.loads import WakeOscillator, scruton_number, skop_griffin_number, wind_excitation
 from frahm.loads.record import WindRecord, as_record, constant_record, turbulent_record
 from frahm.loads.vortex import check_speeds
 from frahm.systems import System, build_system
-from frahm.time_integration import signals
-from frahm.time_integration.batch import LEAST_STEPS, STEPS_PER_PERIOD, TOLERANCE, check_memory, outcome_of
-from frahm.time_integration.driven import Flow, drive, mechanics_of, table_of
+from frahm.time_integration.batch import TOLERANCE, check_memory
+from frahm.time_integration.driven_history import DrivenHistory, integrate_record
+from frahm.time_integration.wake import check_wake, wake_excitation
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _DEFAULT_DURATION = 600.0  # [s], over which wind speeds are averaged
 _GUST_PERIODS = 2.0  # shedding periods the fastest gust kept lasts: vortices cannot follow faster ones
-_FLOOR = 1e-6  # of the static deflection: the size of a pipe at rest
-
-
-@dataclass(frozen=True, eq=False)
-class DrivenHistory:
-    """A trajectory in unsteady wind at equally spaced times.
-
-    Attributes
-    ----------
-    time : ndarray, shape (s,)
-        From the start of the record [s].
-    x, v : ndarray, shape (s, n)
-        Displacements [m] and velocities [m/s] of the coordinates.
-    z : ndarray, shape (s,)
-        Displacement of the first element [m]; NaN without elements.
-    phase : ndarray, shape (s,)
-        Phase of the shedding, the integral of Omega dt [rad].
-    outcome : Outcome
-        How the run ended; if it failed, the samples end where it did.
-    steps : tuple of int
-        Accepted and rejected steps.
-    system : System
-    """
-
-    time: Floats
-    x: Floats
-    v: Floats
-    z: Floats
-    phase: Floats
-    outcome: Outcome
-    steps: tuple[int, int]
-    system: System
-
-    @property
-    def pipe(self) -> Floats:
-        """Displacement of the pipe [m], shape (s,)."""
-        return self.x @ self.system.output
-
-    @property
-    def pipe_peak(self) -> float:
-        """Largest displacement of the pipe [m]."""
-        return signals.peak(self.pipe, self.v @ self.system.output, self._spacing)
-
-    @property
-    def relative_peak(self) -> float:
-        """Largest displacement of the first element [m]; NaN without elements."""
-        if not self.system.elements:
-            return math.nan
-        return signals.peak(self.z, self.v @ self.system.elements[0].direction, self._spacing)
-
-    def pipe_rms(self, since: float = 0.0) -> float:
-        """Root mean square of the pipe [m] from the time `since` [s] on."""
-        kept = self.pipe[self.time >= since - 0.5 * self._spacing]
-        return float(np.sqrt(np.mean(kept**2))) if kept.size else math.nan
-
-    @property
-    def _spacing(self) -> float:
-        return float(self.time[1] - self.time[0]) if self.time.size > 1 else 1.0
+_FORCED_NOTES = (
+    "Shedding frequency and lift follow the wind without delay and in phase along the pipe; a gust that is short "
+    "against the shedding period, or does not cover the pipe, does less.",
+    "The motion does not hold the shedding to itself here: where vortices lock in, gusts detune them less, and the "
+    "pipe moves more than in this result. What gusts take off is no margin to design on.",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +51,8 @@ class UnsteadyResponse:
     resonant_speed : float
         Wind speed whose shedding meets the natural frequency [m/s]; NaN if the tables do not reach it.
     resonant_amplitude : float
-        Amplitude of the pipe without absorbers in steady wind of that speed [m], in closed form.
+        Amplitude of the pipe without absorbers in steady wind of that speed [m], in closed form: with a wake oscillator
+        that of Eq. 35 of Facchinetti et al.
     time_constant : float
         1/(zeta omega) of the pipe without absorbers [s], in closed form.
     build_up_time : float
@@ -198,6 +147,7 @@ def unsteady_response(
     record: Any = None,
     duration: float | None = None,
     seed: int | None = None,
+    wake: WakeOscillator | None = None,
     initial_state: ArrayLike | None = None,
     samples_per_period: int = 32,
     tolerance: float | None = None,
@@ -206,7 +156,8 @@ def unsteady_response(
     """Integrate the pipe of a case in unsteady wind, with and without its absorbers.
 
     Shedding frequency and lift follow the wind at every instant: phase = int Omega(U(t)) dt, and the force is
-    F_L(U(t)) cos phase. That holds for gusts much longer than a shedding period.
+    F_L(U(t)) cos phase. That holds for gusts much longer than a shedding period, and knows no lock-in; a wake
+    oscillator does.
 
     Parameters
     ----------
@@ -219,6 +170,8 @@ def unsteady_response(
         Time to integrate [s]; by default all of a record, 600 s of turbulence.
     seed : int, optional
         Of the synthetic turbulence; by default the seed of the analysis.
+    wake : WakeOscillator, optional
+        Drives the pipe in place of the harmonic lift, and locks in to its motion; the pipe must be given as one mode.
     initial_state : array_like, shape (2n,), optional
         (x_0, v_0, x_1, v_1, ...) with absorbers; the pipe without them starts from the part that is its own. Rest by
         default.
@@ -241,7 +194,10 @@ def unsteady_response(
     wind = _wind(case, record, duration, seed)
     span = wind.duration if duration is None else min(duration, wind.duration)
     low, high = _extremes(wind, span)
-    check_speeds(case, "record", low, high)
+    if wake is None:
+        check_speeds(case, "record", low, high)
+    else:
+        check_wake(case, wake)
     tolerance = TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
     per_period = check_count("samples_per_period", samples_per_period, at_least=8, at_most=10**4)
     spacing = 2 * math.pi / case.pipe.frequency / per_period
@@ -252,101 +208,28 @@ def unsteady_response(
     state = np.zeros(2 * n) if initial_state is None else finite_array("initial_state", initial_state, (2 * n,))
     law = wind_excitation(case)
     calm = constant_record(_mean(wind, span), max(span, spacing))
-    with_them = (case, system, state, spacing, count, tolerance)
-    without = (case.without_absorbers(), bare, state[: 2 * alone], spacing, count, tolerance)
+    with_them = (case, system, state, spacing, count, tolerance, wake)
+    without = (case.without_absorbers(), bare, state[: 2 * alone], spacing, count, tolerance, wake)
     runs = [integrate_record(record, *which) for which in (with_them, without) for record in (wind, calm)]
     failed = next((run.outcome for run in runs if not run.outcome.ok), None)
     if throw and failed is not None:
         raise ConvergenceError(failed.value)
     times = wind.time[0] + spacing * np.arange(count)
     speed = np.interp(times, wind.time, wind.speed)
-    resonance = law.speeds_of(case.pipe.frequency)
-    resonant, amplitude, measured = _resonance(case, bare, float(resonance.min()) if resonance.size else math.nan)
+    if wake is None:
+        frequency, lift = law.frequency(speed), law.lift(speed)
+        resonant, amplitude, measured = _resonance(case, bare)
+    else:
+        frequency, lift = wake_excitation(case, wake, speed)
+        resonant, amplitude, measured = *_wake_resonance(case, wake), math.nan
     rate = case.pipe.damping_ratio * case.pipe.frequency
     return UnsteadyResponse(
-        case=case, record=wind, speed=frozen(speed), frequency=frozen(law.frequency(speed)),
-        lift=frozen(law.lift(speed)), history=runs[0], steady=runs[1], bare=runs[2], bare_steady=runs[3],
+        case=case, record=wind, speed=frozen(speed), frequency=frozen(frequency), lift=frozen(lift),
+        history=runs[0], steady=runs[1], bare=runs[2], bare_steady=runs[3],
         resonant_speed=resonant, resonant_amplitude=amplitude, time_constant=1 / rate if rate else math.inf,
-        build_up_time=measured, since=0.5 * span, notes=_notes(case, wind, span),
+        build_up_time=measured, since=0.5 * span, notes=_notes(case, wind, span, wake),
         samples_per_period=per_period, tolerance=tolerance,
     )  # fmt: skip
-
-
-def integrate_record(
-    record: WindRecord,
-    case: Case,
-    system: System,
-    state: Floats,
-    spacing: float,
-    count: int,
-    tolerance: float,
-) -> DrivenHistory:
-    """One trajectory of a system, made from a case, in the wind of a record.
-
-    Parameters
-    ----------
-    record : WindRecord
-    case : Case
-        Gives shedding and lift.
-    system : System
-        Its forcing is the lift at the wind speed of the case.
-    state : ndarray, shape (2n,)
-        (x_0, v_0, x_1, v_1, ...).
-    spacing : float
-        Of the samples [s].
-    count : int
-        Samples, the initial state included.
-    tolerance : float
-        Local error per step relative to the size of the motion.
-    """
-    omega, n = system.reference_frequency, system.size
-    flow, shape = _flow(case, system, record)
-    mechanics = mechanics_of(system, shape)
-    push = float(np.max(np.abs(mechanics.forcing))) * flow.pressure * float(np.max(record.speed)) ** 2
-    largest = float(np.max(flow.lift[:, 1]))
-    start = np.concatenate([state[0::2], state[1::2], [0.0, 0.0]])
-    samples = np.empty((count, start.size))
-    knots, speeds = _with_kinks(record, wind_excitation(case))
-    steps = LEAST_STEPS + (STEPS_PER_PERIOD * spacing * omega / (2 * math.pi) + 4) * count + 4 * knots.size
-    code, taken, accepted, rejected = drive(
-        mechanics, flow, knots, speeds, spacing, omega,
-        max(_FLOOR * push * largest / omega**2, 1e-300), tolerance, steps, start, samples,
-    )  # fmt: skip
-    x, v = frozen(samples[:taken, :n]), frozen(samples[:taken, n : 2 * n])
-    direction = system.elements[0].direction if system.elements else np.full(n, np.nan)
-    return DrivenHistory(
-        time=frozen(spacing * np.arange(taken)), x=x, v=v, z=frozen(x @ direction),
-        phase=frozen(samples[:taken, 2 * n]), outcome=outcome_of(code), steps=(int(accepted), int(rejected)),
-        system=system,
-    )  # fmt: skip
-
-
-def _with_kinks(record: WindRecord, law: WindExcitation) -> tuple[Floats, Floats]:
-    """Times and speeds of a record, with those where a table over the Reynolds number bends: no step crosses them."""
-    t, U = record.time, record.speed
-    times, speeds = [np.array(t)], [np.array(U)]
-    for kink in law.kinks(float(U.min()), float(U.max())):
-        i = np.flatnonzero((U[:-1] - kink) * (U[1:] - kink) < 0)
-        times.append(t[i] + (kink - U[i]) / (U[i + 1] - U[i]) * (t[i + 1] - t[i]))
-        speeds.append(np.full(i.size, kink))
-    knots, first = np.unique(np.concatenate(times), return_index=True)
-    return knots, np.concatenate(speeds)[first]
-
-
-def _flow(case: Case, system: System, record: WindRecord) -> tuple[Flow, Floats]:
-    """What the wind does, and the force on the coordinates per unit of U^2 C_L [N s^2/m^2]."""
-    law = wind_excitation(case)
-    shift = math.log(case.wind.viscosity / case.pipe.diameter)  # ln U = ln Re + shift
-    strouhal = table_of(law.strouhal.knots + shift, law.strouhal.values)
-    lift = table_of(law.lift_coefficient.knots + shift, law.lift_coefficient.values)
-    # The lift of the case at its own wind may be zero where the table has another: any other speed shares the shape.
-    speeds = np.append(record.speed[record.speed > 0], case.wind.speed)
-    forces = law.lift(speeds)
-    strongest = float(speeds[int(np.nanargmax(forces))])
-    reference = system if strongest == case.wind.speed else build_system(case.with_wind(speed=strongest))
-    scale = strongest**2 * float(law.lift_coefficient.value(law.reynolds_number(strongest)))
-    shape = np.array(reference.forcing) / scale if scale else np.zeros(system.size)
-    return Flow(False, 2 * math.pi / case.pipe.diameter, 1.0, strouhal, lift, 0.0, 0.0, 0.0), shape
 
 
 def _wind(case: Case, record: Any, duration: float | None, seed: int | None) -> WindRecord:
@@ -387,8 +270,18 @@ def _mean(record: WindRecord, span: float) -> float:
     return float(np.trapezoid(np.append(record.speed[kept], np.interp(end, record.time, record.speed)), time) / span)
 
 
-def _resonance(case: Case, bare: System, speed: float) -> tuple[float, float, float]:
+def _wake_resonance(case: Case, wake: WakeOscillator) -> tuple[float, float]:
+    """Speed of resonance and the amplitude of Eq. 35 of Facchinetti et al."""
+    pipe = case.pipe
+    speed = pipe.frequency / (2 * math.pi) * pipe.diameter / wake.strouhal
+    Ks = scruton_number(pipe.mass / pipe.length, pipe.damping_ratio, pipe.diameter, case.wind.air_density)
+    return speed, pipe.diameter * wake.lock_in_amplitude(skop_griffin_number(Ks, wake.strouhal))
+
+
+def _resonance(case: Case, bare: System) -> tuple[float, float, float]:
     """Resonant speed, amplitude of the governing mode there, and the time constant of an integrated build-up."""
+    speeds = wind_excitation(case).speeds_of(case.pipe.frequency)
+    speed = float(speeds.min()) if speeds.size else math.nan
     zeta, omega = case.pipe.damping_ratio, case.pipe.frequency
     low, high = wind_excitation(case).speed_range
     if math.isnan(speed) or not low <= speed <= high:
@@ -410,14 +303,15 @@ def _resonance(case: Case, bare: System, speed: float) -> tuple[float, float, fl
     return speed, amplitude, spacing / -math.log(ratio) if 0 < ratio < 1 else math.nan
 
 
-def _notes(case: Case, record: WindRecord, span: float) -> tuple[str, ...]:
+def _notes(case: Case, record: WindRecord, span: float, wake: WakeOscillator | None) -> tuple[str, ...]:
     notes = list(record.notes)
-    notes += [
-        "Shedding frequency and lift follow the wind without delay and in phase along the pipe; a gust that is short "
-        "against the shedding period, or does not cover the pipe, does less.",
-        "The motion does not hold the shedding to itself here: where vortices lock in, gusts detune them less, and the "
-        "pipe moves more than in this result. What gusts take off is no margin to design on.",
-    ]
+    if wake is not None:
+        notes.append(
+            f"The wake oscillator has St = {wake.strouhal:g} and C_L0 = {wake.lift_coefficient:g}; it was made for "
+            "steady flow, and a gust acts on all of the pipe at once."
+        )
+    else:
+        notes += _FORCED_NOTES
     if span * case.pipe.damping_ratio * case.pipe.frequency < 3:
         notes.append("The record is shorter than three time constants of the pipe: its motion has not built up fully.")
     return tuple(notes)

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 _BLOCK = 80  # natural periods looked at together
 _PER_PERIOD = 24  # samples, in the block that is read off
 _SETTLED = 2e-3  # relative change of the size from block to block
-_FLOOR = 1e-9  # of the diameter
-_START = 0.1  # of q at the first speed, the pipe at rest
+WAKE_FLOOR = 1e-9  # of the diameter
+WAKE_START = 0.1  # of q at the first speed, the pipe at rest
 _WINDOW = (0.8, 1.3)  # of the resonant speed
 _CHECKED_REYNOLDS = (300.0, 1.5e5)  # for which St = 0.2 is printed
 
@@ -181,12 +181,8 @@ def wake_response(
         If an integration fails and `throw` is true.
     """
     case = load_case(case)
-    if not isinstance(case.pipe, Pipe):
-        allowed = "a pipe of kind mode: the wake oscillator is one of a rigid pipe"
-        raise ParameterError("pipe.kind", case.pipe.kind, allowed)
     wake = WakeOscillator() if wake is None else wake
-    if not isinstance(wake, WakeOscillator):
-        raise ParameterError("wake", wake, "a frahm.WakeOscillator")
+    check_wake(case, wake)
     axis = np.linspace(*_window(case, wake, wind), check_count("speeds", speeds, at_least=2, at_most=10**5))
     tolerance = TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
     blocks = max(2, check_count("most_periods", most_periods, at_least=2 * _BLOCK, at_most=10**7) // _BLOCK)
@@ -216,6 +212,22 @@ def _window(case: Case, wake: WakeOscillator, wind: Any) -> tuple[float, float]:
     return lo, hi
 
 
+def check_wake(case: Case, wake: Any) -> None:
+    """Refuse what is no wake oscillator, and pipes it is not made for."""
+    if not isinstance(wake, WakeOscillator):
+        raise ParameterError("wake", wake, "a frahm.WakeOscillator")
+    if not isinstance(case.pipe, Pipe):
+        allowed = "a pipe of kind mode: the wake oscillator is one of a rigid pipe"
+        raise ParameterError("pipe.kind", case.pipe.kind, allowed)
+
+
+def wake_excitation(case: Case, wake: WakeOscillator, speed: Floats) -> tuple[Floats, Floats]:
+    """Shedding frequency [rad/s] and lift of the pipe at rest [N] at wind speeds [m/s]."""
+    pipe = case.pipe
+    pressure = 0.5 * case.wind.air_density * pipe.diameter * pipe.length
+    return 2 * math.pi * wake.strouhal / pipe.diameter * speed, pressure * wake.lift_coefficient * speed**2
+
+
 def wake_flow(case: Case, wake: WakeOscillator) -> Flow:
     """The wake of a rigid pipe: the force 1/4 rho U^2 D C_L0 q and the damping gamma Omega rho D^2, per length."""
     D, rho, length = case.pipe.diameter, case.wind.air_density, case.pipe.length
@@ -236,7 +248,7 @@ def _sweep(
     first[0] = 1.0
     mechanics, flow = mechanics_of(system, first), wake_flow(case, wake)
     state = np.zeros(2 * system.size + 2)
-    state[2 * system.size] = _START
+    state[2 * system.size] = WAKE_START
     return [_lasting(case, system, mechanics, flow, float(speed), state, tolerance, blocks) for speed in order]
 
 
@@ -245,7 +257,7 @@ def _lasting(
 ) -> tuple[float, float, float, float, float, bool, Outcome]:
     """Let the motion settle at one speed, and read it off; `state` is carried on."""
     n, omega = system.size, system.reference_frequency
-    period, least = 2 * math.pi / omega, _FLOOR * case.pipe.diameter
+    period, least = 2 * math.pi / omega, WAKE_FLOOR * case.pipe.diameter
     wind, knots = np.array([speed, speed]), np.array([0.0, 1e300])
     size, settled = math.inf, False
     once = np.empty((_BLOCK + 1, state.size))

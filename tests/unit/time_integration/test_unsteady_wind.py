@@ -187,3 +187,35 @@ def test_a_motion_that_has_no_time_to_settle_is_named():
     found = frahm.wake_response(CASE.without_absorbers(), wind=(3.0, 3.05), speeds=2, most_periods=160)
     assert "had not settled at 3" in found.unverified[0]
     assert not np.all(found.curve.settled)
+
+
+def test_a_wake_in_steady_wind_builds_up_to_its_lock_in_curve():
+    wake, speed = WakeOscillator(), 3.0
+    found = frahm.unsteady_response(CASE, record=([0.0, 1200.0], [speed, speed]), wake=wake)
+    lasting = frahm.wake_response(CASE, wind=(speed, speed + 1e-6), speeds=2, wake=wake)
+    assert found.bare.pipe_peak == pytest.approx(lasting.bare.pipe_peak[0, 0], rel=3e-3)
+    assert found.bare.pipe_rms(found.since) == pytest.approx(lasting.bare.pipe_rms[0, 0], rel=5e-3)
+    assert found.resonant_amplitude == pytest.approx(0.0735 * 0.762, rel=1e-3)
+    assert np.max(np.abs(found.bare.q)) > 2
+    assert np.all(np.isnan(found.history.phase))
+    assert found.lift[0] == pytest.approx(0.5 * 0.3 * 1.225 * 9.0 * 0.762)
+
+
+def test_a_wake_in_gusts_against_scipy():
+    wake = WakeOscillator()
+    found = frahm.unsteady_response(CASE, record=GUSTS, wake=wake, tolerance=1e-11)
+    assert any("steady flow" in note for note in found.notes)
+    assert not any("no margin" in note for note in found.notes)
+
+    def rates(t, y):
+        return wake_by_hand(CASE, wake, float(np.interp(t, GUSTS.time, GUSTS.speed)))(t, y)
+
+    y, ends = np.array([0.0, 0.0, 0.0, 0.0, 0.1, 0.0]), [*GUSTS.time[1:-1], found.history.time[-1]]
+    for start, stop in zip([0.0, *ends[:-1]], ends, strict=True):
+        y = solve_ivp(rates, (start, stop), y, method="DOP853", rtol=1e-10, atol=1e-13).y[:, -1]
+    np.testing.assert_allclose(found.history.x[-1], y[:2], atol=1e-7 * np.max(np.abs(found.history.x)))
+    assert found.history.q[-1] == pytest.approx(y[4], abs=1e-7)
+    with pytest.raises(frahm.ParameterError, match=r"pipe\.kind"):
+        frahm.unsteady_response("jacket-pipe-elastic", record=GUSTS, wake=wake)
+    with pytest.raises(frahm.ParameterError, match="WakeOscillator"):
+        frahm.unsteady_response(CASE, record=GUSTS, wake="facchinetti")
