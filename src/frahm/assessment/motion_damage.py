@@ -17,8 +17,8 @@ from frahm.time_integration import TimeHistory, integrate
 _FINE, _COARSE = 64, 32  # samples per period: for the orbit of a periodic motion, and for a long history
 _CHUNK = 500  # periods of a history that does not repeat, at least
 _BEATS = 10  # beats in a chunk, at least
-_LONGEST = 8000  # periods after which a rate that still changes is given up
-SETTLED = 0.02  # relative difference of the rate between the two halves of a history
+_LONGEST = 32_000  # periods after which a rate that still changes is given up
+SETTLED = 0.03  # relative difference of the rate between the two halves of a history
 _FAILED = (Outcome.STEP_LIMIT, Outcome.STEP_TOO_SMALL)
 
 
@@ -53,7 +53,7 @@ def motion_damage(system: System, attractor: Attractor, detail: Detail) -> Motio
     """Damage per time on an attractor.
 
     A periodic motion is counted over its closed orbit: every range is a full cycle. Any other is followed over at least
-    1000 periods and ten beats, twice as long each time the rates of its halves differ by more than 2 %.
+    1000 periods and ten beats, twice as long each time the rates of its halves differ by more than 3 %.
     """
     if attractor.outcome is Outcome.DIVERGED:
         return MotionDamage(float("inf"), float("inf"), 0.0, 0)

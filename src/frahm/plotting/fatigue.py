@@ -8,7 +8,7 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.plotting.panels import name_panels, panels
-from frahm.plotting.style import BARE, INK, PIPE, SINK, UNSTABLE_DASHES
+from frahm.plotting.style import BARE, PIPE, SINK, UNSTABLE_DASHES
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -51,6 +51,8 @@ def fatigue_plot(damage: xr.Dataset) -> go.Figure:
     """The same for the browser."""
     from plotly.subplots import make_subplots
 
+    from frahm.plotting.interactive import plot_layout
+
     figure = make_subplots(rows=2, cols=1, shared_xaxes=True, vertical_spacing=0.08)
     edges = bin_edges(damage)
     dashes = {"damage_without": "dot", "damage_with_weighted": "dash", "damage_with": "solid"}
@@ -73,11 +75,8 @@ def fatigue_plot(damage: xr.Dataset) -> go.Figure:
             hovertemplate="%{x:.3f} m/s<br>%{y:.3g} MPa<br>%{text}",
         )  # fmt: skip
     decades = [float(np.log10(value)) for value in damage_range(damage)]
-    figure.update_layout(
-        template="simple_white", height=620, margin={"l": 70, "r": 16, "t": 30, "b": 50},
-        legend={"orientation": "h", "yanchor": "bottom", "y": 1.02, "x": 0},
-        font={"family": "system-ui, sans-serif", "size": 13, "color": INK},
-    )  # fmt: skip
+    figure.update_layout(**plot_layout(620))
+    figure.update_layout(legend={"yanchor": "bottom", "y": 1.02})
     figure.update_yaxes(
         title_text="damage per wind speed [s/m]",
         type="log",
