@@ -172,7 +172,8 @@ def _result(
     if survey.at:
         found = [survey.at[float(speed)] for speed in speeds]
         rates, weighted = _rates(survey, edges), np.array([one.weighted_rate for one in found])
-        bin_with, bin_weighted = (np.where(chances > 0, T * chances * each, 0.0) for each in (rates, weighted))
+        counted = chances > 0  # a wind that never blows does no damage, however large the motion
+        bin_with, bin_weighted = (T * chances * np.where(counted, each, 0.0) for each in (rates, weighted))
         ranges = np.array([one.damage[one.worst].largest_range if one.damage else 0.0 for one in found])
         kinds = tuple(one.found[one.worst].kind if len(one.found) else "unsettled" for one in found)
         number = np.array([sum(a.kind != "unsettled" for a in one.found) for one in found])
