@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy.linalg
@@ -38,6 +38,7 @@ _QUICK = 0.2  # way of a multiplier near the unit circle from point to point tha
 _GRID = 401
 _STRONG_FREQUENCIES = 9
 _STRONG_THIRD = 0.12  # third harmonic beside the first from where on both are searched together
+_CROSSING = 5e-3  # of a point: how near a branch passes that crosses another one there
 
 
 @dataclass
@@ -61,6 +62,7 @@ class Track:
     event_points: list[tuple[Floats, Floats, int] | None] = field(default_factory=list)
     births: list[tuple[LocatedEvent, Point]] = field(default_factory=list)
     parent: Track | None = None
+    meets: list[Track] = field(default_factory=list)
 
     @property
     def pieces(self) -> np.ndarray:
@@ -176,6 +178,8 @@ def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
     tracks = [track for track in tracks if complete(search, track)]
     for track in list(tracks) if asymmetric else []:
         tracks += asymmetric_branches(search, track, tracks)
+    for track in tracks:
+        _join(search, track, tracks)
     return sorted(tracks, key=lambda track: _response_at(track, search.lo))
 
 
@@ -199,6 +203,53 @@ def _third_harmonic(search: Search, tracks: list[Track]) -> float:
         )
         ratios.append(float(np.max(third / np.maximum(first, 1e-300), initial=0.0)))
     return max(ratios)
+
+
+def _join(search: Search, track: Track, tracks: list[Track]) -> None:
+    """Tell the branches a branch turns back on: a turn there is no saddle-node but its birth from the other one.
+
+    Branches cross where equal absorbers cease to move alike: the branch that is born turns into its mirror image there.
+    """
+    for i, (event, point) in enumerate(zip(track.events, track.event_points, strict=True)):
+        if event.kind != "saddle-node" or point is None:
+            continue
+        others = [o for o in tracks if o is not track and o.odd == track.odd and _passes(search, o, point)]
+        for other in others:
+            track.meets.append(other)
+            other.meets.append(track)
+            track.events[i] = replace(event, kind="branch-point")
+
+
+def _passes(search: Search, track: Track, point: Point) -> bool:
+    """Whether a branch passes through a located point, as closely as a crossing can be located."""
+    y, _, H = point
+    n = unknowns(search.problem, H, track.odd)
+    W, offset = y[n], track.frequency - y[n]
+    for i in np.flatnonzero((offset[:-1] * offset[1:] <= 0) & (track.frequency[:-1] != track.frequency[1:])):
+        share = (W - track.frequency[i]) / (track.frequency[i + 1] - track.frequency[i])
+        ends = []
+        for k in (i, i + 1):
+            own = np.zeros(n)
+            kept = min(n, unknowns(search.problem, int(track.Hs[k]), track.odd))
+            own[:kept] = track.ys[k, :kept]
+            ends.append(own)
+        if np.linalg.norm((1 - share) * ends[0] + share * ends[1] - y[:n]) < _CROSSING * np.linalg.norm(y[:n]):
+            return True
+    return False
+
+
+def connected(tracks: list[Track]) -> list[Track]:
+    """Branches that hang together with the first one, directly or through others."""
+    found: list[Track] = []
+    waiting = tracks[:1]
+    while waiting:
+        track = waiting.pop()
+        if any(track is other for other in found):
+            continue
+        found.append(track)
+        waiting += [other for other in tracks if other.parent is track or other is track.parent]
+        waiting += track.meets
+    return found
 
 
 def _response_at(track: Track, W: float) -> float:

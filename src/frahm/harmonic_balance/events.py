@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 NEUTRAL = 1e-9
 _COMPLEX = 1e-6
 _DEEPEST = 5
+_SHARP = 2e-11  # of the frequency: how sharply a point is located where the equations are regular
 
 Point = tuple[Floats, Floats, int]
 
@@ -95,7 +96,8 @@ def _between(search: Search, odd: bool, a: _Place, b: _Place, depth: int) -> lis
     event = LocatedEvent(_kind(odd, folded, here.multipliers[rank]), here.columns, float(half), True)
     before, after = (_beside(here, end, rank) for end in (a, b))
     steps = [(a, before), (after, b)]
-    if folded and before.unstable == after.unstable:  # a fold changes the number by one: something hides beside it
+    crossing = half > _SHARP * here.columns[0]  # located beside the singular point where branches cross
+    if folded and not crossing and before.unstable == after.unstable:  # a fold changes the number: something hides
         steps = _around(search, odd, a, here, b)
     left, right = steps[: len(steps) // 2], steps[len(steps) // 2 :]
     found = [[e for step in side for e in _between(search, odd, *step, depth + 1)] for side in (left, right)]

@@ -157,10 +157,22 @@ def locate(pb, va, odd, ya, ta, Ha, yb, tb, Hb, rank, x_scale, w_scale, y, t, mu
         return False, H, 0.0
     width = abs(b[n] - a[n])
     last, f_last = a[n], fa
+    at, y_last, t_last = -1.0, np.empty(y.size), np.empty(t.size)
     for _ in range(60):
         middle = 0.5 * (lo + hi) if fa == fb else (lo * fb - hi * fa) / (fb - fa)
         if not between(pb, odd, a, sa, b, sb, H, middle, x_scale, w_scale, y, t):
-            return False, H, width
+            # where branches cross the equations are singular: the answer is as near as one can get
+            if abs(middle - at) < 1e-3:
+                y[:], t[:] = y_last, t_last
+                return True, H, abs(middle - at) * width + 1e-12 * last
+            at = middle + 0.05
+            if not between(pb, odd, a, sa, b, sb, H, at, x_scale, w_scale, y, t):
+                return False, H, width
+            f = _critical(pb, va, odd, H, y, t, rank, multipliers)
+            half = 0.05 * width + 1e-12 * last
+            return abs(f) < 0.1 * abs(fb - fa) and half < 1e-6 * last, H, half
+        at = middle
+        y_last[:], t_last[:] = y, t
         f = _critical(pb, va, odd, H, y, t, rank, multipliers)
         moved = abs(y[n] - last)
         rest = moved * abs(f) / abs(f - f_last) if f != f_last else 0.0  # what one more secant step would move

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance import Track, begin, find_branches, is_linear, linear_growth, linear_response
+from frahm.harmonic_balance import Track, begin, connected, find_branches, is_linear, linear_growth, linear_response
 from frahm.response.curve import ResponseCurve, SpecialPoint
 from frahm.systems import System, detuning_of
 
@@ -59,6 +59,7 @@ def _assembled(system: System, tracks: list[Track], settings: dict[str, Any]) ->
         if any(ending not in _ENDED_WELL for ending in track.endings):
             where = ", ".join(f"{track.frequency[i]:.6g}" for i in (0, -1))
             doubtful.append(f"Branch {number} could not be followed to its end; it stops near {where} rad/s.")
+    hanging = connected(tracks)
     columns = np.concatenate([track.columns for track in tracks]) if tracks else np.empty((0, 5))
     growth = np.concatenate([_growth(track) for track in tracks]) if tracks else np.empty(0)
     if not tracks:
@@ -74,20 +75,13 @@ def _assembled(system: System, tracks: list[Track], settings: dict[str, Any]) ->
         piece=np.concatenate([track.pieces for track in tracks]) if tracks else np.empty(0, int),
         stable=growth < 0,
         growth_rate=growth,
-        detached=tuple(_is_detached(track, tracks) for track in tracks),
+        detached=tuple(not any(track is other for other in hanging) for track in tracks),
         asymmetric=tuple(track.parent is not None for track in tracks),
         special_points=tuple(sorted(special, key=lambda p: p.frequency)),
         unverified=tuple(doubtful),
         settings=settings,
         system=system.name,
     )
-
-
-def _is_detached(track: Track, tracks: list[Track]) -> bool:
-    """Whether a branch has no connection with branch 0, directly or through a loss of symmetry."""
-    while track.parent is not None:
-        track = track.parent
-    return track is not tracks[0]
 
 
 def _growth(track: Track) -> Floats:
