@@ -187,13 +187,14 @@ def _result(
         bin_weighted, number, unsettled, kinds = bin_with, none + 1, none, ("linear",) * speeds.size
         locked = _locked_in(linear, detail, climate, edges, held)
     growth = case.pipe.damping_ratio * case.pipe.frequency
+    outside, worst_outside = _outside(bare, bare_detail, climate, edges)
     known: dict[str, Any] = dict(  # noqa: C408 keyword by keyword, as the result takes them
         damage_with=float(np.sum(bin_with)),
         damage_with_weighted=float(np.sum(bin_weighted)),
         damage_without=float(np.sum(without)),
         locked_in_with=locked,
         locked_in_without=_locked_in(bare, bare_detail, climate, edges, held),
-        outside_without=_outside(bare, bare_detail, climate, edges),
+        outside_without=outside,
         speeds=frozen(speeds), lower=frozen(edges[:-1]), upper=frozen(edges[1:]),
         frequencies=frozen(excitation.frequency(speeds)),
         detunings=frozen(excitation.frequency(speeds) - case.pipe.frequency),
@@ -204,7 +205,9 @@ def _result(
         stress_range_without=float(np.max(range_without, initial=0.0)), section=detail.section, case=case,
         lock_in=lock_in, settings=_settings(survey, climate),
     )  # fmt: skip
-    return FatigueDamage(**known, unverified=doubts_of(known, survey, bare, linear), notes=notes_of(known, survey))
+    return FatigueDamage(
+        **known, unverified=doubts_of(known, survey, bare, linear, worst_outside), notes=notes_of(known, survey)
+    )
 
 
 def _bare_detail(detail: Detail, case: Case) -> Detail:
@@ -240,18 +243,20 @@ def _locked_in(pipe: LinearPipe | None, detail: Detail, climate: WindClimate, ed
     return climate.duration * chance * float(np.max(pipe.rate(speeds, detail)))
 
 
-def _outside(pipe: LinearPipe | None, detail: Detail, climate: WindClimate, edges: Floats) -> float:
-    """Damage by all other winds, in closed form."""
-    if pipe is None:
-        return 0.0
-    if not pipe.decays:
-        return math.inf
+def _outside(pipe: LinearPipe | None, detail: Detail, climate: WindClimate, edges: Floats) -> tuple[float, float]:
+    """Damage by all other winds, in closed form, and the wind speed [m/s] near which most of it is done."""
+    if pipe is None or not pipe.decays:
+        return (0.0 if pipe is None else math.inf), math.nan
     low, high = max(pipe.excitation.speed_range[0], _CALM), min(pipe.excitation.speed_range[1], _STORM)
-    total = 0.0
+    total, worst, where = 0.0, 0.0, math.nan
     for first, last in ((low, edges[0]), (edges[-1], high)):
         if last > first:
-            total += float(np.sum(linear_damage(pipe, detail, climate, np.linspace(first, last, _OUTSIDE))[0]))
-    return total
+            ends = np.linspace(first, last, _OUTSIDE)
+            parts = linear_damage(pipe, detail, climate, ends)[0]
+            total += float(np.sum(parts))
+            if parts.max() > worst:
+                worst, where = float(parts.max()), float(middles(ends)[np.argmax(parts)])
+    return total, where
 
 
 def _settings(survey: WindSurvey, climate: WindClimate) -> dict[str, Any]:

@@ -21,7 +21,11 @@ _NOTABLE = 1e-4  # damage too small for any design fatigue factor to matter
 
 
 def doubts_of(
-    known: Mapping[str, Any], survey: WindSurvey, bare: LinearPipe | None, linear: LinearPipe | None
+    known: Mapping[str, Any],
+    survey: WindSurvey,
+    bare: LinearPipe | None,
+    linear: LinearPipe | None,
+    worst_outside: float,
 ) -> tuple[str, ...]:
     """What speaks against the numbers."""
     found = [survey.at[speed] for speed in sorted(survey.at)]
@@ -36,8 +40,9 @@ def doubts_of(
     outside, inside = known["outside_without"], known["damage_with"]
     if outside > _NOTABLE and outside > 0.05 * inside:
         doubts.append(
-            f"Winds outside the band do a damage of {outside:.2g} to the pipe without absorbers, which is not counted:"
-            " widen the band (fatigue.wind_speeds, or analysis.detuning)."
+            f"Winds outside the band do a damage of {outside:.2g} to the pipe without absorbers, most of it near"
+            f" {worst_outside:.3g} m/s, which is not counted: widen the band (fatigue.wind_speeds, or"
+            " analysis.detuning)."
         )
     return tuple(doubts)
 
