@@ -57,6 +57,11 @@ _PUBLIC = {
     "DesignSettings": "frahm.design",
     "DesignStudy": "frahm.design",
     "DesignedAbsorber": "frahm.design",
+    "read_data": "frahm.exchange",
+    "read_table": "frahm.exchange",
+    "read_time_series": "frahm.exchange",
+    "write_data": "frahm.exchange",
+    "write_time_history": "frahm.exchange",
 }
 
 __all__ = ["__version__", *_PUBLIC]

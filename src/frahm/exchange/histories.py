@@ -1,0 +1,34 @@
+"""Time histories as tab-delimited text, as most programs for structures and signals read it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from frahm.files import write_text
+
+if TYPE_CHECKING:
+    from frahm.time_integration import TimeHistory
+
+
+def time_history_text(history: TimeHistory) -> str:
+    """Tab-delimited text: one line with the names and units of the columns, then a line for every sample.
+
+    The columns are the time, the displacement of the pipe, that of the first absorber relative to it with its
+    velocity, and displacement and velocity of every coordinate.
+    """
+    columns = {"time [s]": history.time, "pipe [m]": history.pipe}
+    if history.system.elements:
+        columns |= {"z [m]": history.z, "z velocity [m/s]": history.w}
+    for i in range(history.system.size):
+        columns |= {f"x{i + 1} [m]": history.x[:, i], f"x{i + 1} velocity [m/s]": history.v[:, i]}
+    rows = np.column_stack(list(columns.values())).tolist()
+    lines = ["\t".join(columns), *("\t".join(map(repr, row)) for row in rows)]
+    return "\n".join(lines) + "\n"
+
+
+def write_time_history(history: TimeHistory, path: str | Path) -> None:
+    """Write `time_history_text`; the file appears complete or not at all."""
+    write_text(path, time_history_text(history))
