@@ -6,7 +6,7 @@ from frahm.case.case import Case
 from frahm.case.climate import Climate, ClimateRow, Weibull
 from frahm.case.fatigue import SN_CURVE_NAMES, Fatigue
 from frahm.case.fields import FieldFacts, FieldValue, field_table, field_values
-from frahm.case.loading import builtin_names, builtin_text, load_case, template_text
+from frahm.case.loading import builtin_names, builtin_text, case_from_text, load_case, template_text
 from frahm.case.mode_table import ModeTable
 from frahm.case.pipe import AnyPipe, Pipe
 from frahm.case.schema import case_schema
@@ -35,6 +35,7 @@ __all__ = [
     "Wind",
     "builtin_names",
     "builtin_text",
+    "case_from_text",
     "case_schema",
     "field_table",
     "field_values",

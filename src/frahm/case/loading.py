@@ -87,8 +87,26 @@ def _sources() -> str:
     return _SOURCES.format(", ".join(builtin_names()))
 
 
+def case_from_text(text: str, name: str) -> Case:
+    """Case of the text of a YAML or TOML file, which of the two its `name` says.
+
+    Raises
+    ------
+    ParameterError
+        As `load_case`, with `name` as the file.
+    """
+    if Path(name).suffix.lower() not in _READERS:
+        raise ParameterError("case", name, _sources(), hint=f"The ending {Path(name).suffix!r} is not known.")
+    if len(text.encode()) > _LARGEST:
+        raise ParameterError("case", name, f"a case file of at most {_LARGEST // 1024} kB")
+    return _from_text(text, name)
+
+
 def _from_file(source: str | os.PathLike[str]) -> Case:
-    text = _text(source)
+    return _from_text(_text(source), source)
+
+
+def _from_text(text: str, source: str | os.PathLike[str]) -> Case:
     try:
         data, lines = _READERS[Path(source).suffix.lower()](text)
     except TextError as error:

@@ -10,6 +10,7 @@ import frahm
 from frahm.cli import cases, run
 from frahm.cli.design import design
 from frahm.cli.guarded import GuardedGroup
+from frahm.cli.page import page
 from frahm.cli.reproduce import reproduce
 
 app = typer.Typer(
@@ -36,6 +37,7 @@ for command in (
     reproduce,
 ):
     app.command()(command)
+app.command("app")(page)
 
 
 def _version(wanted: bool) -> None:

@@ -12,7 +12,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
 
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
@@ -161,6 +160,8 @@ def two_harmonic_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
 
     Where the third harmonic is strong it changes the first, and solutions exist that no first-harmonic root leads to.
     """
+    from scipy.stats import qmc  # takes half a second to load
+
     S, F = stiffness_at(pb, 1, W)
     radius = math.sqrt(np.max(amplitude_roots(S[0, 0], F[0], e), initial=0.0))
     sample = qmc.Halton(4, seed=1).random(_TWO_HARMONIC_STARTS)
@@ -179,6 +180,8 @@ def two_harmonic_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
 
 def searched_seeds(pb: Problem, W: float, scale: float, odd: bool) -> list[Seed]:
     """First-harmonic solutions with several elements, searched from a fixed spread set of starts."""
+    from scipy.stats import qmc  # takes half a second to load
+
     r = pb.M11.shape[0]
     sample = qmc.Halton(2 * r, seed=1).random(_STARTS)
     radius = scale * 10 ** (-2.5 + 2.8 * sample[:, :r])

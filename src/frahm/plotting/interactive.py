@@ -11,18 +11,20 @@ from plotly.subplots import make_subplots
 from frahm.arrays import Floats
 from frahm.plotting.basins import BASIN_AXES, basin_entries, basin_indices
 from frahm.plotting.lines import (
+    DETUNING_LABEL,
     KIND_NAMES,
     MODULATED_NAMES,
     MOST_LABELS,
+    QUANTITY_LABELS,
     Line,
     envelopes,
     largest_finite,
+    line_colour,
     lines_by_name,
     response_lines,
     special_marks,
     thinned,
 )
-from frahm.plotting.static import DETUNING_LABEL, QUANTITY_LABELS, line_colour
 from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK
 from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
 

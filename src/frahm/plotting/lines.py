@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from frahm.arrays import Floats
+from frahm.plotting.style import PAIR, PIPE, SINK
 
 if TYPE_CHECKING:
     import xarray as xr
 
+DETUNING_LABEL = "detuning σ = Ω - ω [rad/s]"
+QUANTITY_LABELS = {"pipe_peak": "pipe displacement x₁ [m]", "relative_peak": "relative displacement z [m]"}
 SHORT_NAMES = {
     "saddle-node": "SN",
     "hopf": "H",
@@ -56,6 +59,11 @@ class Mark:
     kind: str
     x: float
     y: float
+
+
+def line_colour(line: Line) -> str:
+    """Colour of a line by the kind of its branch."""
+    return PAIR if line.asymmetric else SINK if line.detached else PIPE
 
 
 def response_lines(curve: xr.Dataset, quantity: str) -> list[Line]:

@@ -8,18 +8,20 @@ import numpy as np
 from matplotlib.patheffects import withStroke
 
 from frahm.plotting.lines import (
+    DETUNING_LABEL,
     KIND_NAMES,
     MODULATED_NAMES,
     MOST_LABELS,
-    Line,
+    QUANTITY_LABELS,
     envelopes,
     largest_finite,
+    line_colour,
     lines_by_name,
     response_lines,
     special_marks,
     thinned,
 )
-from frahm.plotting.style import BARE, GREEN, INK, PAIR, PIPE, SINK, UNSTABLE_DASHES, new_figure
+from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK, UNSTABLE_DASHES, new_figure
 from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
 
 if TYPE_CHECKING:
@@ -27,8 +29,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-DETUNING_LABEL = "detuning σ = Ω - ω [rad/s]"
-QUANTITY_LABELS = {"pipe_peak": "pipe displacement x₁ [m]", "relative_peak": "relative displacement z [m]"}
 _SIGNAL_LOOKS: dict[str, tuple[str, Any, float]] = {"x1": (PIPE, "-", 1.4), "z": (SINK, (0, (3.0, 1.2)), 1.1)}
 _SLOW_LOOK: dict[str, Any] = {"color": INK, "linewidth": 0.6, "alpha": 0.8}
 MARKERS = {"saddle-node": "^", "hopf": "s", "neimark-sacker": "D", "period-doubling": "v", "branch-point": "P"}
@@ -127,11 +127,6 @@ def manifold_figure(manifold: xr.Dataset, motion: MotionView | None = None, fold
     axes.set(xlim=(0, None), ylim=(0, manifold_height(manifold, motion, folds)))
     axes.legend(loc="upper left")
     return figure
-
-
-def line_colour(line: Line) -> str:
-    """Colour of a line by the kind of its branch."""
-    return PAIR if line.asymmetric else SINK if line.detached else PIPE
 
 
 def _draw_branches(axes: Axes, curve: xr.Dataset, quantity: str) -> None:

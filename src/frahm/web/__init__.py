@@ -1,0 +1,1 @@
+"""Room `web`: the interactive page of `frahm app`, served to this machine only."""

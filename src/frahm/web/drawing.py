@@ -1,0 +1,107 @@
+"""What the figures of the page draw, as arrays of at most a thousand points: no trace is ever thinned at its ends."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from frahm.arrays import Floats
+from frahm.plotting.lines import SHORT_NAMES, largest_finite, stretches
+from frahm.plotting.style import PAIR, PIPE, SINK
+from frahm.response import ResponseCurve, SpecialPoint
+
+MOST_POINTS = 1000
+QUANTITIES = ("pipe_peak", "relative_peak")
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Lines of one look.
+
+    Attributes
+    ----------
+    name : str
+        What the legend says.
+    colour : str
+    stable : bool
+        Drawn solid; dashed otherwise.
+    """
+
+    name: str
+    colour: str
+    stable: bool
+
+
+KINDS = {
+    (False, False, True): Kind("stable", PIPE, True),
+    (False, False, False): Kind("unstable", PIPE, False),
+    (True, False, True): Kind("detached, stable", SINK, True),
+    (True, False, False): Kind("detached, unstable", SINK, False),
+    (False, True, True): Kind("asymmetric, stable", PAIR, True),
+    (False, True, False): Kind("asymmetric, unstable", PAIR, False),
+}
+SLOW_KINDS = tuple(key for key in KINDS if not key[1])  # one harmonic has no asymmetric response
+EXACT_KINDS = tuple(KINDS)
+
+
+def curve_lines(
+    curve: ResponseCurve, kinds: Iterable[tuple[bool, bool, bool]] = EXACT_KINDS
+) -> list[dict[str, Floats]]:
+    """Lines of a response curve, one entry for every kind: "detuning" and the quantities, NaN in the gaps."""
+    parts: dict[tuple[bool, bool, bool], list[slice]] = {key: [] for key in kinds}
+    for part, stable in stretches(curve.stable, curve.piece, curve.branch):
+        branch = curve.branch[part.start]
+        asymmetric = curve.asymmetric[branch]
+        parts[(curve.detached[branch] and not asymmetric, asymmetric, stable)].append(part)
+    columns = {"detuning": curve.detuning, **{name: getattr(curve, name) for name in QUANTITIES}}
+    return [{name: _joined(values, found) for name, values in columns.items()} for found in parts.values()]
+
+
+def _joined(values: Floats, parts: list[slice]) -> Floats:
+    """Stretches with a gap between them; of many points every k-th and the last of each stretch."""
+    if not parts:
+        return np.empty(0)
+    total = sum(part.stop - part.start for part in parts) + len(parts)
+    every = -(-total // max(1, MOST_POINTS - 2 * len(parts)))
+    pieces: list[Floats] = []
+    for part in parts:
+        kept = np.arange(part.start, part.stop)
+        if every > 1:
+            kept = np.append(kept[:-1:every], kept[-1])
+        pieces += [values[kept], np.array([np.nan])]
+    return np.concatenate(pieces[:-1])
+
+
+def special_points(points: Iterable[SpecialPoint]) -> list[dict[str, Any]]:
+    """Special points with their labels SN1, H1, ... in order of frequency."""
+    count: dict[str, int] = {}
+    found = []
+    for point in points:
+        short = SHORT_NAMES[point.kind]
+        count[short] = count.get(short, 0) + 1
+        found.append(
+            {
+                "label": f"{short}{count[short]}",
+                "kind": point.kind,
+                "detuning": point.detuning,
+                "pipe_peak": point.pipe_peak,
+                "relative_peak": point.relative_peak,
+                "located": point.status == "located",
+            }
+        )
+    return found
+
+
+def heights(curve: ResponseCurve) -> dict[str, float]:
+    """Largest value of each quantity on a curve [m]."""
+    return {name: largest_finite(getattr(curve, name)) for name in QUANTITIES}
+
+
+def typed(values: Any) -> dict[str, str]:
+    """Doubles as Plotly.js reads them, without a digit lost."""
+    array = np.ascontiguousarray(values, dtype="<f8")
+    return {"dtype": "f8", "bdata": base64.b64encode(array.tobytes()).decode("ascii")}

@@ -1,0 +1,208 @@
+"""What takes longer than a drag of a slider: functions from a case to plain data, run in a process of their own."""
+
+from __future__ import annotations
+
+import json
+import math
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from frahm.arrays import Floats
+from frahm.case import Case, load_case
+from frahm.errors import Outcome
+from frahm.harmonic_balance import PeriodicResponse
+
+Progress = Callable[[str, int, int], None]
+
+_SAMPLES_PER_PERIOD = 32
+_PERIODS = 600
+_LAST_PERIODS = 40
+_MOST_POINTS = 1000
+_SLIDES = 8  # a period: places of the sliding amplitude
+
+
+def exact_response(case: Case, progress: Progress) -> dict[str, Any]:
+    """Exact response curve by harmonic balance over the window of the case."""
+    from frahm.response import frequency_response
+    from frahm.web.drawing import curve_lines, heights, special_points
+
+    harmonics = case.analysis.harmonics
+    curve = frequency_response(case, detuning=case.analysis.detuning, harmonics=harmonics)
+    stable, at = curve.largest(stable_only=True)
+    return {
+        "lines": [{name: values.tolist() for name, values in line.items()} for line in curve_lines(curve)],
+        "special": special_points(curve.special_points),
+        "heights": heights(curve),
+        "largest": curve.largest()[0],
+        "largest_stable": None if np.isnan(stable) else [stable, at - case.pipe.frequency],
+        "branches": len(curve.branches),
+        "detached": sum(branch.detached for branch in curve.branches),
+        "unverified": list(curve.unverified),
+    }
+
+
+def motion(
+    case: Case, progress: Progress, *, detuning: float, near: tuple[float | None, float | None] | None = None
+) -> dict[str, Any]:
+    """Motion of the exact equations at one detuning, as a figure.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable
+        Told what is done.
+    detuning : float
+        [rad/s].
+    near : tuple of float, optional
+        Pipe and relative peak [m] of the periodic response to start on, None for one that does not matter; from rest
+        if not given.
+    """
+    from frahm.analysis.settling import judge
+    from frahm.plotting.interactive import motion_plot
+    from frahm.response import periodic_responses
+    from frahm.time_integration import integrate
+
+    start, about = None, "from rest"
+    if near is not None:
+        responses = periodic_responses(case, detuning=detuning, harmonics=case.analysis.harmonics)
+        if responses:
+            found = min(responses, key=lambda response: _distance(response, near))
+            start = found.state
+            kind = "stable" if found.stable else "unstable"
+            about = f"from the {kind} periodic response with a pipe peak of {found.pipe_peak:.4g} m"
+    progress("integrating", 0, 1)
+    history = integrate(
+        case, detuning=detuning, periods=_PERIODS, initial_state=start, samples_per_period=_SAMPLES_PER_PERIOD
+    )
+    tail = history.last(_PERIODS // 4) if history.outcome is Outcome.DONE else history
+    view = _view(history, tail, judge(history)[0], about, detuning)
+    figure = motion_plot(view)
+    figure.update_layout(height=None, legend={"yref": "container", "yanchor": "bottom", "y": 0})
+    peaks = tail.peaks()
+    return {
+        "figure": json.loads(figure.to_json()),
+        "kind": view.kind,
+        "about": about,
+        "detuning": detuning,
+        "pipe_peak": peaks.pipe,
+        "relative_peak": peaks.relative,
+        "outcome": history.outcome.value if history.outcome is not Outcome.DONE else "",
+        "slow": [values.tolist() for values in view.slow] if view.slow else None,
+        "history": _table(history),
+    }
+
+
+def _distance(response: PeriodicResponse, near: tuple[float | None, float | None]) -> float:
+    """Relative distance of a response from the peaks clicked at."""
+    pairs = zip((response.pipe_peak, response.relative_peak), near, strict=True)
+    return sum(abs(math.log(max(now, 1e-300) / max(wanted, 1e-300))) for now, wanted in pairs if wanted is not None)
+
+
+def _view(history: Any, tail: Any, kind: str, about: str, detuning: float) -> Any:
+    from frahm.analysis.settling import envelope_of
+    from frahm.plotting.views import MotionView
+
+    signals = {"x1": history.pipe, "z": history.z}
+    period = 2 * np.pi / history.frequency
+    envelopes = {name: envelope_of(values, history.samples_per_period) for name, values in signals.items()}
+    middles = period * (0.5 + np.arange(envelopes["x1"][0].size))
+    window = slice(max(0, history.time.size - _LAST_PERIODS * history.samples_per_period - 1), None)
+    spectrum = tail.spectrum()
+    shown = spectrum["frequency_hz"].values < 4.0 / period
+    names = {"x1": "pipe_amplitude", "z": "relative_amplitude"}
+    return MotionView(
+        facts={
+            "key": "motion", "reason": about, "detuning": detuning, "kind": kind,
+            "frequency": history.frequency,
+        },
+        envelope={name: (middles, low, high) for name, (low, high) in envelopes.items()},
+        last={name: _at_most(history.time[window], values[window]) for name, values in signals.items()},
+        spectrum={
+            name: (spectrum["frequency_hz"].values[shown], spectrum[column].values[shown])
+            for name, column in names.items()
+        },
+        slow=(_amplitude(history, history.z), _amplitude(history, history.pipe)),
+    )  # fmt: skip
+
+
+def _amplitude(history: Any, values: Floats) -> Floats:
+    """First-harmonic amplitude [m] over a period that slides along the last part of the history."""
+    per_period = history.samples_per_period
+    carried = values * np.exp(-1j * history.frequency * history.time)
+    total = np.concatenate([[0.0], np.cumsum(carried)])
+    mean = (total[per_period:] - total[:-per_period]) / per_period
+    return np.asarray(2 * np.abs(mean[:: per_period // _SLIDES][-_MOST_POINTS:]), dtype=float)
+
+
+def _at_most(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    every = -(-x.size // _MOST_POINTS)
+    return x[::every], y[::every]
+
+
+def _table(history: Any) -> str:
+    """The history as tab-delimited text for other programs."""
+    from frahm.exchange import time_history_text
+
+    return time_history_text(history)
+
+
+def attractors(case: Case, progress: Progress, *, detuning: float) -> dict[str, Any]:
+    """Every long-term motion at one detuning, with the share of initial states that leads to it."""
+    from frahm.attractors import find_attractors
+
+    settings = case.analysis
+    found = find_attractors(case, detuning=detuning, samples=settings.samples, seed=settings.seed)
+    rows = [
+        {
+            "kind": one.kind,
+            "pipe_peak": _finite(one.pipe_peak),
+            "relative_peak": _finite(one.relative_peak),
+            "basin_fraction": _finite(one.basin_fraction),
+            "basin_interval": list(one.basin_interval),
+            "from_rest": one.from_rest,
+            "outcome": "" if one.outcome is Outcome.DONE else one.outcome.value,
+        }
+        for one in found
+    ]
+    return {"detuning": detuning, "samples": found.samples, "seed": found.seed, "attractors": rows}
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
+
+
+def report(case: Case, progress: Progress) -> dict[str, Any]:
+    """The report of the whole analysis, as HTML text."""
+    from frahm.analysis import analyse
+    from frahm.report import write_report
+
+    analysis = analyse(case, progress=progress)
+    progress("figures and report", 1, 1)
+    with tempfile.TemporaryDirectory(prefix="frahm-") as folder:
+        text = write_report(analysis, Path(folder)).read_text(encoding="utf-8")
+    return {"html": text, "verified": analysis.verified, "verdict": analysis.verdict}
+
+
+def warm_up(case: Case, progress: Progress) -> dict[str, Any]:
+    """Load what the quick jobs need, so that the first one does not have to."""
+    exact_response(case, progress)
+    motion(case, progress, detuning=sum(case.analysis.detuning) / 2)
+    return {}
+
+
+JOBS: dict[str, Callable[..., dict[str, Any]]] = {
+    "exact response": exact_response,
+    "motion": motion,
+    "attractors": attractors,
+    "report": report,
+    "warm-up": warm_up,
+}
+
+
+def do(name: str, case: dict[str, Any], arguments: dict[str, Any], progress: Progress) -> dict[str, Any]:
+    """Run a job by name on a case given as plain data."""
+    return JOBS[name](load_case(case), progress, **arguments)

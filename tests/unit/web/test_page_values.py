@@ -1,0 +1,194 @@
+"""What the fields say, what the figures draw, and what the competitor does: without a browser."""
+
+import numpy as np
+import pytest
+
+import frahm
+from frahm.web import words
+from frahm.web.controls import CONTROLS, DETUNING, reading
+from frahm.web.drawing import EXACT_KINDS, KINDS, MOST_POINTS, SLOW_KINDS, curve_lines
+from frahm.web.jobs import attractors, exact_response, motion
+from frahm.web.layout import field_texts, spans
+from frahm.web.live import MAP_CLASSES, check_shown, manifold_lines, responses_at, slow_curve, stability_map
+from frahm.web.presets import PRESETS
+from frahm.web.tuned import bare_response, tuned_mass_damper_response
+
+CASE = frahm.load_case("jacket-pipe")
+TEXTS = field_texts(CASE, 0.1)
+
+
+def silent(*step):
+    pass
+
+
+def test_untouched_fields_leave_the_case_as_it_is():
+    found = reading(CASE, TEXTS)
+    assert found.problems == {}
+    assert found.case.digest == CASE.digest
+    assert found.detuning == 0.1
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "expected"),
+    [
+        ("kappa", "250.5", CASE.with_absorber(kappa=250.5)),
+        ("xi2", " 0.01 ", CASE.with_absorber(xi2=0.01)),
+        ("rho2", "3 %", CASE.with_absorber(rho2=0.03)),
+        ("wind.speed", "9 km/h", CASE.with_wind(speed=2.5)),
+        ("pipe.frequency", "0.8 Hz", CASE.with_pipe(frequency="0.8 Hz")),
+        ("pipe.damping_ratio", "0.002", CASE.with_pipe(damping_ratio=0.002)),
+    ],
+)
+def test_fields_read_numbers_and_text_with_units(name, text, expected):
+    found = reading(CASE, TEXTS | {name: text})
+    assert found.problems == {}
+    assert found.case.digest == expected.digest
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "change"),
+    [
+        ("pipe.frequency", "0.8 kg", lambda: CASE.with_pipe(frequency="0.8 kg")),
+        ("pipe.damping_ratio", "1.5", lambda: CASE.with_pipe(damping_ratio=1.5)),
+        ("wind.speed", "-1", lambda: CASE.with_wind(speed=-1.0)),
+        ("xi2", "-0.5", lambda: CASE.with_absorber(xi2=-0.5)),
+    ],
+)
+def test_bad_entries_are_explained_in_the_words_of_the_python_interface(name, text, change):
+    with pytest.raises(frahm.ParameterError) as caught:
+        change()
+    assert reading(CASE, TEXTS | {name: text}).problems == {name: str(caught.value)}
+
+
+@pytest.mark.parametrize("text", ["", "abc", "nan", "inf", "0", "-3", "1e999", "5 m", "<b>5</b>"])
+def test_no_bad_entry_gets_through(text):
+    found = reading(CASE, TEXTS | {"kappa": text, DETUNING: "7"})
+    assert set(found.problems) == {"kappa", DETUNING}
+    assert "kappa: given" in found.problems["kappa"]
+    assert ">= -0.4 and <= 0.4" in found.problems[DETUNING]
+
+
+def test_titles_units_and_symbols_come_from_the_fields_of_the_case():
+    control = next(control for control in CONTROLS if control.name == "pipe.frequency")
+    assert (control.title, control.unit, control.symbol) == ("Natural frequency of the pipe", "rad/s", "omega")
+    for name, span in spans(CASE).items():
+        assert span.position(float(TEXTS[name])) in range(1001), name
+
+
+def test_every_point_of_the_curve_is_in_exactly_one_line():
+    curve = frahm.frequency_response(PRESETS[3].case(), detuning=(-0.4, 0.4), method="slow-flow", points=300)
+    lines = curve_lines(curve, SLOW_KINDS)
+    drawn = np.concatenate([np.stack([line["detuning"], line["pipe_peak"]], axis=1) for line in lines])
+    drawn = np.unique(drawn[np.isfinite(drawn[:, 0])], axis=0)
+    np.testing.assert_array_equal(drawn, np.unique(np.stack([curve.detuning, curve.pipe_peak], axis=1), axis=0))
+    for holds in (True, False):
+        chosen = [line["detuning"] for key, line in zip(SLOW_KINDS, lines, strict=True) if key[2] is holds]
+        assert set(curve.detuning[curve.stable == holds]) <= set(np.concatenate(chosen))
+
+
+def test_no_trace_has_more_points_than_the_browser_can_draw_in_time():
+    curve = frahm.frequency_response(CASE, detuning=(-0.4, 0.4), method="slow-flow", points=20000)
+    lines = curve_lines(curve, EXACT_KINDS)
+    assert max(line["detuning"].size for line in lines) <= MOST_POINTS
+    ends = [float(curve.detuning.min()), float(curve.detuning.max())]
+    drawn = np.concatenate([line["detuning"] for line in lines])
+    assert [np.nanmin(drawn), np.nanmax(drawn)] == ends
+    assert [KINDS[key].stable for key in EXACT_KINDS] == [key[2] for key in EXACT_KINDS]
+
+
+def test_the_map_counts_the_responses_of_the_curve():
+    found = stability_map(CASE, "kappa", (100.0, 1000.0))
+    row, column = 40, 70
+    case = CASE.with_absorber(kappa=found.parameter[row])
+    responses = frahm.periodic_responses(case, detuning=found.detuning[column], harmonics=1)
+    pipe, _, stable = responses_at(case, found.detuning[column])
+    assert len(responses) == pipe.size
+    np.testing.assert_allclose(sorted(r.pipe_peak for r in responses), np.sort(pipe), rtol=1e-6)
+    words_of = {(1, 1): 0, (3, 2): 1, (3, 1): 2, (3, 0): 3, (1, 0): 4}
+    assert found.classes[row, column] == words_of[(pipe.size, int(stable.sum()))]
+    assert found.classes.min() >= 0
+    assert found.classes.max() < len(MAP_CLASSES)
+
+
+def test_folds_of_the_drawn_manifold_are_its_turning_points():
+    lines = manifold_lines(CASE, 0.0)
+    whole = np.where(np.isnan(lines.attracting), lines.repelling, lines.attracting)
+    slopes = np.sign(np.diff(whole))
+    turns = lines.relative[1:-1][slopes[1:] != slopes[:-1]]
+    np.testing.assert_array_equal(turns, lines.folds.relative)
+    assert manifold_lines(CASE.with_absorber(xi2=0.1), 0.0).folds is None
+
+
+def test_the_tuned_mass_damper_is_solved_like_by_harmonic_balance():
+    found = tuned_mass_damper_response(CASE)
+    ratio, zeta = 0.980391, 0.085829  # equal peaks at mu = 0.02
+    omega, mass = ratio * CASE.pipe.frequency, CASE.absorbers[0].mass
+    pipe = CASE.pipe
+    system = frahm.System(
+        mass=np.diag([pipe.mass, mass]),
+        damping=np.diag([2 * pipe.damping_ratio * pipe.mass * pipe.frequency, 0.0]),
+        stiffness=np.diag([pipe.mass * pipe.frequency**2, 0.0]),
+        forcing=frahm.build_system(CASE).forcing,
+        elements=[frahm.Element(direction=[-1.0, 1.0], law=frahm.Linear(mass * omega**2, 2 * zeta * mass * omega))],
+        reference_frequency=pipe.frequency,
+    )
+    (response,) = frahm.periodic_responses(system, detuning=float(found.detuning[150]))
+    assert found.pipe[150] == pytest.approx(response.pipe_peak, rel=1e-4)  # six digits of the tuning
+    assert found.relative[150] == pytest.approx(response.relative_peak, rel=1e-4)
+    bare = bare_response(CASE)
+    assert bare.pipe.max() == pytest.approx(0.0867, rel=1e-3)
+    assert np.isnan(bare_response(CASE.with_pipe(damping_ratio=0)).pipe).sum() == 1
+
+
+def test_only_what_the_page_can_draw_is_let_in():
+    check_shown(CASE)
+    for case in (CASE.without_absorbers(), frahm.load_case("jacket-pipe-elastic")):
+        with pytest.raises(frahm.ParameterError, match="for this page"):
+            check_shown(case)
+
+
+def test_the_exact_job_draws_what_python_computes():
+    found = exact_response(CASE, silent)
+    curve = frahm.frequency_response(CASE, detuning=(-0.4, 0.4))
+    assert found["largest"] == curve.largest()[0]
+    assert [point["detuning"] for point in found["special"]] == [point.detuning for point in curve.special_points]
+    drawn = np.concatenate([np.asarray(line["pipe_peak"], dtype=float) for line in found["lines"]])
+    assert set(drawn[np.isfinite(drawn)]) <= set(curve.pipe_peak)
+    assert words.exact_status(found).startswith("Exact response: 1 branch;")
+
+
+def test_a_motion_starts_where_the_curve_was_clicked():
+    upper = max(frahm.periodic_responses(PRESETS[2].case(), detuning=-0.144), key=lambda r: r.pipe_peak)
+    found = motion(PRESETS[2].case(), silent, detuning=-0.144, near=(upper.pipe_peak * 1.01, None))
+    assert found["kind"] == "periodic"
+    assert found["pipe_peak"] == pytest.approx(upper.pipe_peak, rel=1e-4)
+    rest = motion(PRESETS[2].case(), silent, detuning=-0.144)
+    assert rest["pipe_peak"] == pytest.approx(0.0045, rel=0.05)  # printed for this state
+    assert rest["history"].startswith("time [s]\tpipe [m]\tz [m]")
+    assert max(len(trace["x"]) if isinstance(trace["x"], list) else 0 for trace in rest["figure"]["data"]) <= 1000
+
+
+def test_attractors_are_those_of_the_python_interface():
+    case = CASE.with_analysis(samples=40)
+    found = attractors(case, silent, detuning=-0.02)
+    expected = frahm.find_attractors(case, detuning=-0.02, samples=40, seed=1)
+    assert [row["pipe_peak"] for row in found["attractors"]] == [one.pipe_peak for one in expected]
+    assert f"{len(expected)} attractor" in words.attractors_status(found)
+
+
+def test_presets_draw_the_curves_of_the_paper():
+    """Printed ranges of Figs. 5-11 against special points of the slow flow (bounds read off curves: 0.005 rad/s)."""
+    curves = {preset.figure: slow_curve(preset.case()) for preset in PRESETS}
+
+    def points(figure, kind):
+        return [p.detuning for p in curves[figure].special_points if p.kind == kind]
+
+    assert points(6, "saddle-node") == []
+    assert points(6, "hopf") == []
+    assert curves[6].largest()[0] == pytest.approx(0.0493, rel=0.02)
+    assert points(7, "saddle-node")[:2] == pytest.approx([-0.164, -0.1], abs=0.005)
+    assert points(7, "hopf")[0] == pytest.approx(-0.012, abs=0.005)
+    assert points(10, "saddle-node")[:2] == pytest.approx([-0.34, -0.088], abs=0.015)
+    assert min(points(11, "saddle-node")) > 0
+    assert points(11, "hopf")[0] == pytest.approx(-0.016, abs=0.005)
+    assert len(points(5, "hopf")) == 2
