@@ -22,6 +22,7 @@ from frahm.analysis.margin import detached_curve_margin
 from frahm.analysis.modes import modes
 from frahm.analysis.modulated import basins, modulated
 from frahm.analysis.motions import SAMPLES_PER_PERIOD, motions
+from frahm.analysis.over_wind import over_wind
 from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import PERIODIC_BELOW
@@ -53,6 +54,7 @@ STEPS = (
     Step("modes of the pipe", modes),
     Step("slow flow", slow_flow_response),
     Step("similarity numbers and onset criteria", wind),
+    Step("response over the wind speed", over_wind),
     Step("motion in unsteady wind", gusts),
     Step("births and merges of detached curves", detached_curve_margin),
     Step("slow manifold", manifold),

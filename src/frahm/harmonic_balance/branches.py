@@ -105,9 +105,9 @@ class Search:
         return unknowns(self.problem, self.highest, odd) + 1
 
 
-def begin(system: System, lo: float, hi: float, harmonics: int | None) -> Search:
-    """Condense the system and set the scales of the search."""
-    pb = condense(system)
+def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None) -> Search:
+    """Condense the system and set the scales of the search; `forcing` is a factor over Omega, see `forcing_factor`."""
+    pb = condense(system, forcing)
     grid = np.linspace(lo, hi, _SEED_FREQUENCIES)
     largest = 0.0
     e = spring_polynomial(pb)

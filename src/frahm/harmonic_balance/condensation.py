@@ -48,6 +48,7 @@ class Problem(NamedTuple):
     codes: np.ndarray  # (E, 3)
     table: Floats
     degree: int  # of the polynomial forces; 0 if a law is no polynomial
+    forcing: Floats  # (knots, 5): Omega and four coefficients of the factor on the forcing from there on; empty: 1
     odd: bool  # whether every law is odd, so that odd harmonics form a closed set
 
 
@@ -56,7 +57,7 @@ def unknowns(problem: Problem, H: Any, odd: bool) -> Any:
     return 2 * problem.M11.shape[0] * ((H + 1) // 2 if odd else H + 1)
 
 
-def condense(system: System) -> Problem:
+def condense(system: System, forcing: Floats | None = None) -> Problem:
     """Condense a system with at least one nonlinear element onto the elements' coordinates.
 
     Raises
@@ -89,6 +90,7 @@ def condense(system: System) -> Problem:
         codes=codes,
         table=table,
         degree=max(law.coefficients.size for law in nonlinear),
+        forcing=np.zeros((0, 5)) if forcing is None else np.ascontiguousarray(forcing),
         odd=all(law.is_odd for law in nonlinear),
     )  # fmt: skip
 

@@ -48,8 +48,31 @@ def inverse(c):
 
 
 @kernel
+def forcing_factor(pb, W):
+    """Factor on the forcing at Omega = W, and its derivative: 1, or a piecewise cubic, beyond it as W^2."""
+    last = pb.forcing.shape[0] - 1
+    if last < 0:
+        return 1.0, 0.0
+    lo, hi = pb.forcing[0, 0], pb.forcing[last, 0]
+    inside = min(max(W, lo), hi)
+    row, above = 0, last
+    while above - row > 1:
+        middle = (row + above) // 2
+        if pb.forcing[middle, 0] <= inside:
+            row = middle
+        else:
+            above = middle
+    x = inside - pb.forcing[row, 0]
+    c0, c1, c2, c3 = pb.forcing[row, 1], pb.forcing[row, 2], pb.forcing[row, 3], pb.forcing[row, 4]
+    value = c0 + x * (c1 + x * (c2 + x * c3))
+    if inside != W:
+        return value * (W / inside) ** 2, 2.0 * value * W / inside**2
+    return value, c1 + x * (2.0 * c2 + 3.0 * x * c3)
+
+
+@kernel
 def stiffness(pb, s, S, dS, force, dforce):
-    """S(s) and dS/ds (r, r), condensed harmonic force and its derivative (r,)."""
+    """S(s) and dS/ds (r, r), condensed harmonic force and its derivative (r,); the force counts at harmonic 1 only."""
     r = pb.M11.shape[0]
     for i in range(r):
         force[i] = pb.force_u[i]
@@ -71,6 +94,11 @@ def stiffness(pb, s, S, dS, force, dforce):
                 db = 2.0 * s * pb.b2[q, j] + pb.b1[q, j]
                 S[i, j] -= ag * b
                 dS[i, j] -= dag * b + ag * db
+    if pb.forcing.shape[0] > 0:
+        factor, slope = forcing_factor(pb, s.imag)
+        for i in range(r):
+            dforce[i] = factor * dforce[i] - 1j * slope * force[i]  # dOmega/ds = -i
+            force[i] = factor * force[i]
 
 
 @kernel
@@ -78,10 +106,11 @@ def output_harmonic(pb, k, W, u, row):
     """Harmonic k of an output row from the relative coordinates u (r,) of that harmonic."""
     s = 1j * k * W
     value = 0j
+    factor = forcing_factor(pb, W)[0] if k == 1 else 0.0
     for i in range(u.size):
         value += pb.out_u[row, i] * u[i]
     for q in range(pb.poles.size):
-        drive = pb.force_y[q] if k == 1 else 0j
+        drive = factor * pb.force_y[q]
         for i in range(u.size):
             drive -= (s * (s * pb.b2[q, i] + pb.b1[q, i]) + pb.b0[q, i]) * u[i]
         value += pb.out_y[row, q] * drive * inverse(s - pb.poles[q])

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from frahm.plotting.basins import basin_map_figure
 from frahm.plotting.fatigue import fatigue_figure
+from frahm.plotting.over_wind import over_wind_figure
 from frahm.plotting.static import manifold_figure, motion_figure, response_figure
 from frahm.plotting.style import figure_style, save_figure
 from frahm.plotting.views import motion_views, trajectory_to_show
@@ -45,6 +46,11 @@ def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[D
                 )
     for view in views:
         yield f"motion-{view.key}", partial(motion_figure, view)
+    if "response_over_wind" in data:
+        yield (
+            "response-over-wind",
+            partial(over_wind_figure, data["response_over_wind"], data["without_absorber_over_wind"]),
+        )
     if "unsteady_wind" in data:
         yield "unsteady-wind", partial(gusts_figure, data["unsteady_wind"])
     if "slow_manifold" in data:

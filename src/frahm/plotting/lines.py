@@ -36,7 +36,7 @@ MOST_LABELS = 16  # special points: with more of them the labels would hide what
 
 @dataclass(frozen=True)
 class Line:
-    """A stretch of one branch with one kind of stability; `x` is the detuning [rad/s], `y` the displacement [m]."""
+    """A stretch of one branch with one kind of stability; `x` is the detuning [rad/s] or wind [m/s], `y` is in m."""
 
     x: Floats
     y: Floats
@@ -66,11 +66,11 @@ def line_colour(line: Line) -> str:
     return PAIR if line.asymmetric else SINK if line.detached else PIPE
 
 
-def response_lines(curve: xr.Dataset, quantity: str) -> list[Line]:
+def response_lines(curve: xr.Dataset, quantity: str, axis: str = "detuning") -> list[Line]:
     """Stretches of every branch; neighbouring stretches share a point, so that no gap is seen between them."""
     branch, piece = curve["branch"].values, curve["piece"].values
     stable, detached, asymmetric = (curve[name].values.astype(bool) for name in ("stable", "detached", "asymmetric"))
-    x, y = curve["detuning"].values, curve[quantity].values
+    x, y = curve[axis].values, curve[quantity].values
     return [
         Line(x[part], y[part], holds, bool(detached[branch[part.start]]), bool(asymmetric[branch[part.start]]))
         for part, holds in stretches(stable, piece, branch)

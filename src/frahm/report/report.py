@@ -18,6 +18,7 @@ from frahm.files import write_text
 from frahm.plotting.fatigue import fatigue_plot
 from frahm.plotting.gallery import save_figures
 from frahm.plotting.interactive import CONFIG, basin_map_plot, manifold_plot, motion_plot, response_plot
+from frahm.plotting.over_wind import over_wind_plot
 from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
 from frahm.plotting.wind import gusts_plot
 from frahm.report import fatigue_tables, tables
@@ -103,6 +104,9 @@ def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
             figures[name] = response_plot(data["response"], quantity, views, *beside)
     for view in views[:_MOST_MOTIONS]:
         figures[f"motion-{view.key}"] = motion_plot(view)
+    if "response_over_wind" in data:
+        both = data["response_over_wind"], data["without_absorber_over_wind"]
+        figures["response-over-wind"] = over_wind_plot(*both)
     if "unsteady_wind" in data:
         figures["unsteady-wind"] = gusts_plot(data["unsteady_wind"])
     if "slow_manifold" in data:

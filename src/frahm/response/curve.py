@@ -35,6 +35,8 @@ class SpecialPoint:
         Interval of Omega [rad/s] that holds the point.
     status : str
         "located" or "unverified".
+    wind_speed : float, optional
+        U [m/s] where the response is over the wind.
     """
 
     kind: str
@@ -45,6 +47,7 @@ class SpecialPoint:
     branch: int
     interval: tuple[float, float]
     status: str
+    wind_speed: float | None = None
 
 
 @dataclass(frozen=True)
@@ -73,6 +76,7 @@ class Branch:
     stable: np.ndarray
     growth_rate: Floats
     piece: np.ndarray
+    wind_speed: Floats | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +107,8 @@ class ResponseCurve:
         Method, form, window and number of points that made the curve.
     system : str
         Name of the system.
+    wind_speed : ndarray, optional
+        U [m/s] at every point where the response is over the wind.
     """
 
     frequency: Floats
@@ -121,6 +127,7 @@ class ResponseCurve:
     unverified: tuple[str, ...]
     settings: dict[str, Any] = field(default_factory=dict)
     system: str = "system"
+    wind_speed: Floats | None = None
 
     @functools.cached_property
     def branches(self) -> tuple[Branch, ...]:
@@ -131,6 +138,8 @@ class ResponseCurve:
         on = self.branch == number
         names = ("frequency", "detuning", "pipe_amplitude", "relative_amplitude", "pipe_peak", "relative_peak")
         columns = {name: getattr(self, name)[on] for name in (*names, "stable", "growth_rate", "piece")}
+        if self.wind_speed is not None:
+            columns["wind_speed"] = self.wind_speed[on]
         return Branch(number=number, detached=self.detached[number], asymmetric=self.asymmetric[number], **columns)
 
     def largest(self, *, stable_only: bool = False) -> tuple[float, float]:
@@ -157,6 +166,8 @@ class ResponseCurve:
             "stable": ("locally stable", "1"),
             "growth_rate": ("largest growth rate of a disturbance", "1/s"),
         }
+        if self.wind_speed is not None:
+            points["wind_speed"] = ("wind speed U", "m/s")
         variables = {name: labelled("point", getattr(self, name), *text) for name, text in points.items()}
         special = {
             "special_kind": ([SPECIAL_KINDS.index(p.kind) for p in self.special_points], "kind of special point", "1"),
@@ -169,6 +180,9 @@ class ResponseCurve:
             "special_branch": ([p.branch for p in self.special_points], "branch of special point", "1"),
             "special_located": ([p.status == "located" for p in self.special_points], "special point verified", "1"),
         }  # fmt: skip
+        if self.wind_speed is not None:
+            speeds = [p.wind_speed for p in self.special_points]
+            special["special_wind_speed"] = (speeds, "wind speed of special point", "m/s")
         integer = {"special_kind", "special_branch"}
         for name, (data, long_name, units) in special.items():
             dtype = int if name in integer else (bool if name == "special_located" else float)

@@ -16,16 +16,21 @@ _LINEAR_POINTS = 2001
 _ENDED_WELL = (0, 1)
 
 
-def exact_curve(system: System, lo: float, hi: float, harmonics: int | None) -> ResponseCurve:
-    """All branches of periodic responses of the exact equations over Omega in [lo, hi] [rad/s]."""
+def exact_curve(
+    system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None
+) -> ResponseCurve:
+    """All branches of periodic responses of the exact equations over Omega in [lo, hi] [rad/s].
+
+    `forcing` is a factor on the forcing over Omega, see `frahm.harmonic_balance.kernels.forcing_factor`.
+    """
     settings: dict[str, Any] = {
         "method": "harmonic-balance",
         "harmonics": "auto" if harmonics is None else harmonics,
         "frequency_window": (lo, hi),
     }
     if is_linear(system) or not np.any(system.forcing):
-        return _linear_curve(system, lo, hi, settings)
-    search = begin(system, lo, hi, harmonics)
+        return _linear_curve(system, lo, hi, settings, forcing)
+    search = begin(system, lo, hi, harmonics, forcing)
     tracks = find_branches(search)
     settings["inventory"] = inventory_text(search.problem.directions.shape[1], search.problem.degree)
     return _assembled(system, tracks, settings)
@@ -90,11 +95,17 @@ def _growth(track: Track) -> Floats:
     return np.asarray(np.log(np.max(np.abs(track.multipliers), axis=1)) / span)
 
 
-def _linear_curve(system: System, lo: float, hi: float, settings: dict[str, Any]) -> ResponseCurve:
+def _linear_curve(
+    system: System, lo: float, hi: float, settings: dict[str, Any], forcing: Floats | None
+) -> ResponseCurve:
     inside = system.natural_frequencies[(system.natural_frequencies > lo) & (system.natural_frequencies < hi)]
     W = np.unique(np.concatenate([np.linspace(lo, hi, _LINEAR_POINTS), inside]))
     driven = bool(np.any(system.forcing))
     X = linear_response(system, W) if driven else np.zeros((W.size, system.size))
+    if forcing is not None and forcing.size:
+        row = np.clip(np.searchsorted(forcing[:, 0], W, side="right") - 1, 0, len(forcing) - 1)
+        x = W - forcing[row, 0]
+        X = X * sum(forcing[row, 1 + k] * x**k for k in range(4))[:, None]
     first = system.elements[0].direction if system.elements else np.zeros(system.size)
     pipe, relative = np.abs(X @ system.output), np.abs(X @ first)
     growth = np.full(W.size, linear_growth(system))

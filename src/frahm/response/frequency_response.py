@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
-from frahm.case import Case
+import numpy as np
+
+from frahm.case import Case, load_case
 from frahm.errors import ParameterError, check_choice, check_count
 from frahm.harmonic_balance import PeriodicResponse, periodic_responses_of
 from frahm.response.curve import ResponseCurve, SpecialPoint
 from frahm.response.exact import exact_curve
+from frahm.response.wind import wind_axis
 from frahm.slow_flow import SlowBranches, SlowFlow, pipe_scale, slow_branches, slow_flow_of
 from frahm.systems import System, as_system, detuning_of, excitation_frequency, excitation_window
 
@@ -22,6 +26,7 @@ def frequency_response(
     *,
     detuning: tuple[float, float] | None = None,
     frequency: tuple[float, float] | None = None,
+    wind: tuple[float, float] | None = None,
     method: str = "harmonic-balance",
     form: str = "averaged",
     harmonics: int | str = "auto",
@@ -36,7 +41,10 @@ def frequency_response(
     detuning : tuple of float, optional
         Window (lo, hi) in sigma = Omega - omega [rad/s].
     frequency : tuple of float, optional
-        Window (lo, hi) in Omega [rad/s]; give one of the two.
+        Window (lo, hi) in Omega [rad/s].
+    wind : tuple of float, optional
+        Window (lo, hi) in wind speed U [m/s] of a case: shedding frequency and lift both follow it. Give one of the
+        three windows; the wind is for the harmonic balance only.
     method : str
         "harmonic-balance": the exact equations of any system. "slow-flow": the one-harmonic theory of one mode with
         one cubic sink, every branch in closed form.
@@ -59,6 +67,8 @@ def frequency_response(
     """
     system = as_system(case_or_system)
     check_choice("method", method, METHODS)
+    if wind is not None:
+        return _over_wind(case_or_system, system, wind, (detuning, frequency), method, harmonics)
     lo, hi = excitation_window(system, detuning=detuning, frequency=frequency)
     count = check_count("points", points, at_least=2, at_most=10_000_000)
     if method == "harmonic-balance":
@@ -69,6 +79,25 @@ def frequency_response(
         raise ParameterError("detuning", lo - slow.omega, allowed)
     settings = {"method": method, "form": form, "frequency_window": (lo, hi), "points": count}
     return _curve(system, slow, slow_branches(slow, lo, hi, count), settings)
+
+
+def _over_wind(
+    case_or_system: Any, system: System, wind: Any, others: tuple[Any, Any], method: str, harmonics: int | str
+) -> ResponseCurve:
+    """Response over the wind speed."""
+    if any(other is not None for other in others):
+        raise ParameterError("detuning, frequency, wind", (*others, wind), "exactly one of the three, as (lo, hi)")
+    if isinstance(case_or_system, System):
+        raise ParameterError("wind", wind, "left out for a System, which knows no wind; give a case instead")
+    if method != "harmonic-balance":
+        raise ParameterError("method", method, '"harmonic-balance" where the response is wanted over the wind')
+    axis = wind_axis(load_case(case_or_system), wind)
+    curve = exact_curve(system, *axis.frequency, highest_harmonic(harmonics), axis.factor)
+    points = tuple(
+        replace(point, wind_speed=float(axis.speed(np.array(point.frequency)))) for point in curve.special_points
+    )
+    settings = {**curve.settings, "wind_window": axis.window}
+    return replace(curve, wind_speed=axis.speed(curve.frequency), special_points=points, settings=settings)
 
 
 def periodic_responses(

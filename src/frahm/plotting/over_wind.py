@@ -1,0 +1,50 @@
+"""Figure of the response over the wind speed, with and without absorbers, on paper and for the browser."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import plotly.graph_objects as go
+
+from frahm.plotting.interactive import plot_layout, single
+from frahm.plotting.lines import largest_finite, line_colour, lines_by_name, response_lines
+from frahm.plotting.style import BARE, UNSTABLE_DASHES, new_figure
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+SPEED_LABEL = "wind speed U [m/s]"
+_PEAK_LABEL = "largest displacement of the pipe [m]"
+
+
+def over_wind_figure(curve: xr.Dataset, bare: xr.Dataset) -> Figure:
+    """Periodic responses over the wind speed: stable solid, unstable dashed, the pipe without absorbers dotted."""
+    figure = new_figure(160, 95)
+    axes = figure.subplots()
+    for name, line in lines_by_name(response_lines(curve, "pipe_peak", "wind_speed")).items():
+        style = "-" if line.stable else UNSTABLE_DASHES
+        axes.plot(line.x, line.y, linestyle=style, color=line_colour(line), linewidth=1.4, label=name)
+    axes.plot(bare["wind_speed"].values, bare["pipe_peak"].values, ":", color=BARE, label="without absorbers")
+    top = max(largest_finite(data["pipe_peak"].values) for data in (curve, bare))
+    axes.set(xlabel=SPEED_LABEL, ylabel=_PEAK_LABEL, ylim=(0, 1.08 * top or 1.0))
+    axes.margins(x=0)
+    figure.legend(loc="outside lower center", ncols=3)
+    return figure
+
+
+def over_wind_plot(curve: xr.Dataset, bare: xr.Dataset) -> go.Figure:
+    """The same for the browser."""
+    figure = go.Figure()
+    hover = "U %{x:.4f} m/s<br>%{y:.4g} m"
+    for name, line in lines_by_name(response_lines(curve, "pipe_peak", "wind_speed")).items():
+        look = {"color": line_colour(line), "dash": "solid" if line.stable else "dash", "width": 2}
+        figure.add_scatter(x=single(line.x), y=single(line.y), mode="lines", line=look, name=name, hovertemplate=hover)
+    figure.add_scatter(
+        x=single(bare["wind_speed"].values), y=single(bare["pipe_peak"].values), mode="lines", name="without absorbers",
+        line={"color": BARE, "dash": "dot", "width": 1.5}, hovertemplate=hover,
+    )  # fmt: skip
+    figure.update_layout(**plot_layout(430))
+    figure.update_xaxes(title_text=SPEED_LABEL)
+    figure.update_yaxes(title_text=_PEAK_LABEL, rangemode="tozero", title_standoff=8)
+    return figure
