@@ -213,3 +213,61 @@ def _parameter(table, index, like):
     if isinstance(like, numba.types.Float):
         return lambda table, index, like: table[index]
     return None
+
+
+# Functions of `Lanes` and of numbers alike, for code that is compiled for both.
+_E = tuple(1.0 / math.factorial(k) for k in range(16))
+_E0, _E1, _E2, _E3, _E4, _E5, _E6, _E7, _E8, _E9, _E10, _E11, _E12, _E13, _E14, _E15 = _E
+
+
+def root(x):
+    """Square root."""
+    raise NotImplementedError
+
+
+@overload(root)
+def _root(x):
+    if isinstance(x, _LanesType):
+        return lambda x: square_root(x)
+    return lambda x: math.sqrt(x)
+
+
+def larger(a, b):
+    """Larger of two; `b` must be a number or like `a`."""
+    raise NotImplementedError
+
+
+@overload(larger)
+def _larger(a, b):
+    if isinstance(a, _LanesType):
+        return lambda a, b: where_at_most(a, b, b, a)
+    return lambda a, b: b if a <= b else a
+
+
+def hyperbolic_tangent(x):
+    """Hyperbolic tangent, to within 1e-14 in lanes."""
+    raise NotImplementedError
+
+
+@overload(hyperbolic_tangent)
+def _hyperbolic_tangent(x):
+    if isinstance(x, _LanesType):
+        return lambda x: _tanh_of_lanes(x)
+    return lambda x: math.tanh(x)
+
+
+@kernel
+def _tanh_of_lanes(x):
+    """tanh x = (1 - e)/(1 + e) with e = exp(-2 |x|) as the 64th power of a Taylor series; beyond 20 it is 1."""
+    s = magnitude(x)
+    s = where_at_most(s, 20.0, s, spread(20.0)) * (-1.0 / 32.0)
+    p = s * (s * (s * (s * (s * (s * (s * _E15 + _E14) + _E13) + _E12) + _E11) + _E10) + _E9) + _E8
+    p = s * (s * (s * (s * (s * (s * (s * (s * p + _E7) + _E6) + _E5) + _E4) + _E3) + _E2) + _E1) + _E0
+    p = p * p
+    p = p * p
+    p = p * p
+    p = p * p
+    p = p * p
+    p = p * p
+    t = (1.0 - p) / (1.0 + p)
+    return where_at_most(0.0, x, t, -1.0 * t)

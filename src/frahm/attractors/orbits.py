@@ -15,7 +15,6 @@ import numpy as np
 import scipy.linalg
 from scipy.stats import norm, qmc
 
-from frahm.absorbers import Polynomial
 from frahm.arrays import Complexes, Floats, frozen
 from frahm.attractors.stroboscope import Stroboscope
 from frahm.systems import System
@@ -65,13 +64,14 @@ class Orbit:
         return np.any([ball.contains(states) for ball in self.balls], axis=0)
 
 
-def monodromy_along(system: System, span: float, displacements: Floats) -> Floats:
+def monodromy_along(system: System, span: float, displacements: Floats, velocities: Floats | None = None) -> Floats:
     """Fundamental matrix (2n, 2n) over `span` [s] along a motion, states (x_0, v_0, ...).
 
-    `displacements` (2 m + 1, n) are equally spaced; each of the m steps is a Magnus step of order 4.
+    `displacements` and `velocities` (2 m + 1, n), which only friction asks for, are equally spaced; each of the m steps
+    is a Magnus step of order 4.
     """
     n, h = system.size, 2 * span / (len(displacements) - 1)
-    A = _slopes(system, displacements)
+    A = _slopes(system, displacements, np.zeros_like(displacements) if velocities is None else velocities)
     start, middle, end = A[:-1:2], A[1::2], A[2::2]
     exponent = h / 6 * (start + 4 * middle + end) - h * h / 12 * (start @ end - end @ start)
     steps = np.broadcast_to(np.eye(2 * n), exponent.shape)
@@ -86,7 +86,7 @@ def monodromy_along(system: System, span: float, displacements: Floats) -> Float
 def points_needed(system: System, span: float, reach: Floats) -> int:
     """How many displacements per `span` [s] resolve the linearised motion about displacements up to `reach` (n,)."""
     grid = np.linspace(-1.0, 1.0, 21)[:, None] * np.abs(reach)
-    fastest = float(np.max(np.abs(np.linalg.eigvals(_slopes(system, grid)))))
+    fastest = float(np.max(np.abs(np.linalg.eigvals(_slopes(system, grid, np.zeros_like(grid))))))
     return 2 * max(_STEPS, int(np.ceil(span * fastest / _LARGEST_TURN))) + 1
 
 
@@ -168,20 +168,20 @@ def _turn(strobe: Stroboscope, state: Floats, multiple: int) -> tuple[Floats, Fl
     if not history.outcome.ok:
         return None
     image = np.column_stack([history.x[-1], history.v[-1]]).ravel()
-    Phi = monodromy_along(system, multiple * strobe.period, history.x)
+    Phi = monodromy_along(system, multiple * strobe.period, history.x, history.v)
     return (image, Phi) if np.all(np.isfinite(Phi)) else None
 
 
-def _slopes(system: System, x: Floats) -> Floats:
-    """Jacobians (N, 2n, 2n) of the equations of motion at displacements x (N, n), states (x ..., v ...)."""
+def _slopes(system: System, x: Floats, v: Floats) -> Floats:
+    """Jacobians (N, 2n, 2n) of the equations of motion at displacements x and velocities v (N, n), states (x, v)."""
     n = system.size
     K = np.broadcast_to(system.stiffness, (len(x), n, n)).copy()
-    C = np.array(system.damping)
+    C = np.broadcast_to(system.damping, (len(x), n, n)).copy()
     for element in system.elements:
-        law: Polynomial = element.law
+        law = element.law
         outer = np.outer(element.direction, element.direction)
         K += law.stiffness(x @ element.direction)[:, None, None] * outer
-        C += law.damping * outer
+        C += law.damping_at(v @ element.direction)[:, None, None] * outer
     A = np.zeros((len(x), 2 * n, 2 * n))
     A[:, :n, n:] = np.eye(n)
     A[:, n:, :n] = -np.linalg.solve(system.mass, K)

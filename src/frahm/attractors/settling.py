@@ -81,7 +81,7 @@ class Settling:
         system = self.strobe.system
         damping = np.array(system.damping)
         for element in system.elements:
-            damping += element.law.damping * np.outer(element.direction, element.direction)
+            damping += element.law.damping_at(0.0) * np.outer(element.direction, element.direction)
         return bool(np.trace(np.linalg.solve(system.mass, damping)) > _CONSERVATIVE * self.strobe.frequency)
 
     @property

@@ -1,6 +1,15 @@
 """Room `case`: the input, as models of pipe, wind, absorbers, climate, fatigue and analysis; files in and out."""
 
-from frahm.case.absorber import Absorber, CubicLaw, LinearLaw, PolynomialLaw
+from frahm.case.absorber import (
+    Absorber,
+    BistableLaw,
+    CubicLaw,
+    DryFriction,
+    EndStops,
+    LinearLaw,
+    PolynomialLaw,
+    TransverseSpringsLaw,
+)
 from frahm.case.analysis import Analysis
 from frahm.case.case import Case
 from frahm.case.climate import Climate, ClimateRow, Weibull
@@ -18,10 +27,13 @@ __all__ = [
     "Absorber",
     "Analysis",
     "AnyPipe",
+    "BistableLaw",
     "Case",
     "Climate",
     "ClimateRow",
     "CubicLaw",
+    "DryFriction",
+    "EndStops",
     "Fatigue",
     "FieldFacts",
     "FieldValue",
@@ -29,6 +41,7 @@ __all__ = [
     "ModeTable",
     "Pipe",
     "PolynomialLaw",
+    "TransverseSpringsLaw",
     "Tube",
     "Turbulence",
     "Weibull",

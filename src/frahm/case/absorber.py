@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
 
-from frahm.case.quantities import Coefficients, Label, Quantity, QuantityOrNothing
+from frahm.case.quantities import Coefficients, Label, Quantity, QuantityOrNothing, refusal
 from frahm.case.section import Section
 
 
@@ -54,7 +54,89 @@ class PolynomialLaw(Section):
     )
 
 
-Law = Annotated[CubicLaw | LinearLaw | PolynomialLaw, Field(discriminator="kind")]
+class TransverseSpringsLaw(Section):
+    """Two equal springs at right angles to the motion, exact geometry: a cubic spring as it is built."""
+
+    kind: Literal["transverse-springs"] = Field(
+        default="transverse-springs",
+        title="Kind of force law",
+        description="Two springs across the motion.",
+    )
+    stiffness: Annotated[float, Quantity("N/m", "k_s", above=0)] = Field(
+        title="Stiffness of one spring", description="Tension per elongation along the spring."
+    )
+    length: Annotated[float, Quantity("m", "L", above=0)] = Field(
+        title="Length of one spring",
+        description="From its anchor to the absorber in the middle; the free length if there is no pretension.",
+    )
+    pretension: Annotated[float, Quantity("N", "T_0")] = Field(
+        default=0.0,
+        title="Pretension of one spring",
+        description="In the middle; pressed together (negative) it makes two wells. Below stiffness times length.",
+    )
+    damping: Annotated[float, Quantity("N s/m", "c", at_least=0)] = Field(
+        title="Damping of the absorber",
+        description="Force per velocity of the absorber relative to the pipe.",
+    )
+
+    @field_validator("pretension")
+    @classmethod
+    def _has_a_free_length(cls, value: float, info: ValidationInfo) -> float:
+        stiffness, length = info.data.get("stiffness"), info.data.get("length")
+        if stiffness is not None and length is not None and value >= stiffness * length:
+            raise refusal(f"below stiffness times length, {stiffness * length:g} N: the free length must be positive")
+        return value
+
+
+class BistableLaw(Section):
+    """Two wells: force = -negative_stiffness z + stiffness z^3 + damping z'."""
+
+    kind: Literal["bistable"] = Field(
+        default="bistable", title="Kind of force law", description="Negative linear and positive cubic stiffness."
+    )
+    stiffness: Annotated[float, Quantity("N/m^3", "k_3", above=0)] = Field(
+        title="Cubic stiffness",
+        description="Force per cubed displacement of the absorber relative to the pipe.",
+    )
+    negative_stiffness: Annotated[float, Quantity("N/m", "k_1", above=0)] = Field(
+        title="Size of the negative stiffness",
+        description="Of the linear stiffness between the wells, which lie at +-sqrt(negative_stiffness/stiffness).",
+    )
+    damping: Annotated[float, Quantity("N s/m", "c", at_least=0)] = Field(
+        title="Damping of the absorber",
+        description="Force per velocity of the absorber relative to the pipe.",
+    )
+
+
+class EndStops(Section):
+    """Elastic stops that end the travel of an absorber on both sides."""
+
+    gap: Annotated[float, Quantity("m", "z_s", above=0)] = Field(
+        title="Gap to the end stops", description="Free travel of the absorber to either side of the springs' middle."
+    )
+    stiffness: Annotated[float, Quantity("N/m", "k_s", above=0)] = Field(
+        title="Stiffness of an end stop", description="Once its buffer is compressed."
+    )
+    depth: Annotated[float | None, QuantityOrNothing("m", "d_s", above=0)] = Field(
+        default=None,
+        title="Depth of the buffer",
+        description="Over which the stop hardens smoothly; left out: a tenth of the gap.",
+    )
+
+
+class DryFriction(Section):
+    """Coulomb friction of an absorber's guide, regularised as force tanh(velocity/speed)."""
+
+    force: Annotated[float, Quantity("N", "F_f", above=0)] = Field(
+        title="Friction force", description="When the absorber slides: coefficient of friction times normal force."
+    )
+    speed: Annotated[float, Quantity("m/s", "v_s", above=0)] = Field(
+        title="Speed of the regularisation",
+        description="Below about three times this speed the absorber creeps instead of sticking.",
+    )
+
+
+Law = Annotated[CubicLaw | LinearLaw | PolynomialLaw | TransverseSpringsLaw | BistableLaw, Field(discriminator="kind")]
 
 
 class Absorber(Section):
@@ -72,6 +154,18 @@ class Absorber(Section):
         default=None,
         title="Position of the absorber",
         description="Distance from the first end of an elastic pipe; left out: where the pipe moves most.",
+    )
+
+    stops: EndStops | None = Field(
+        default=None, title="End stops", description="What ends the travel of the absorber; left out: nothing."
+    )
+    friction: DryFriction | None = Field(
+        default=None, title="Dry friction", description="Of the absorber's guide; left out: none."
+    )
+    gravity: Annotated[float, Quantity("m/s^2", "g", at_least=-100, at_most=100)] = Field(
+        default=0.0,
+        title="Gravity along the motion",
+        description="Component in the direction of positive z = absorber - pipe: 0 for horizontal motion.",
     )
 
     def normalised(self, host_mass: float) -> dict[str, float]:

@@ -65,10 +65,14 @@ def absorber_of(case: Case) -> DesignedAbsorber | None:
         return None
     absorber, host = case.absorbers[0], case.pipe.mass
     law = absorber.law
+    if absorber.stops is not None or absorber.friction is not None or absorber.gravity:
+        return None
     if isinstance(law, CubicLaw):
         linear, cubic = 0.0, law.stiffness
     elif isinstance(law, LinearLaw):
         linear, cubic = law.stiffness, 0.0
+    elif not isinstance(law, PolynomialLaw):
+        return None
     else:
         powers = (*law.coefficients, 0.0, 0.0)
         linear, cubic = powers[0], powers[2]
@@ -82,7 +86,8 @@ def with_design(case: Case, design: DesignedAbsorber, name: str | None = None) -
     """The case with this absorber in place of its first one."""
     host = case.pipe.mass
     old = case.absorbers[0] if case.absorbers else None
-    kept = {} if old is None else {key: getattr(old, key) for key in old.model_fields_set}
+    fields = set() if old is None else old.model_fields_set - {"stops", "friction", "gravity"}
+    kept = {key: getattr(old, key) for key in fields}
     changes = {"mass": host * design.rho2, "law": design.law(host)} | ({} if name is None else {"name": name})
     new = Absorber(**(kept | changes))
     return Case(

@@ -19,17 +19,17 @@ from frahm.harmonic_balance.newton import correct, solve_at
 from frahm.harmonic_balance.orbits import between, describe, same_harmonics
 from frahm.harmonic_balance.seeds import (
     Seed,
+    Seeder,
     almost_seeds,
     count_cubic,
-    searched_seeds,
-    single_element_seeds,
-    spring_polynomial,
-    stiffness_at,
+    seeder_for,
     two_harmonic_seeds,
 )
 from frahm.systems import System
 
 GOAL = 1e-8
+_ROUGH_GOAL = 1e-6  # with stops or friction, whose force harmonics fall off slowly
+_WORST = 0.05  # truncation with stops or friction beyond which a solution of the harmonics is none of the equations
 _AUTO_HARMONICS = 101
 _MOST_POINTS = 6000
 _LONGEST = 0.02
@@ -82,6 +82,7 @@ class Search:
 
     system: System
     problem: Problem
+    seeder: Seeder
     variation: Variation
     lo: float
     hi: float
@@ -98,7 +99,14 @@ class Search:
     @property
     def goal(self) -> float:
         """Truncation to reach; infinite when the number of harmonics is the user's."""
-        return GOAL if self.harmonics is None else math.inf
+        if self.harmonics is not None:
+            return math.inf
+        return GOAL if self.smooth else _ROUGH_GOAL
+
+    @property
+    def smooth(self) -> bool:
+        """Whether no element has stops or friction."""
+        return all(element.law.is_smooth for element in self.system.elements)
 
     def size(self, odd: bool) -> int:
         """Length of a stored point."""
@@ -110,15 +118,15 @@ def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: 
     pb = condense(system, forcing)
     grid = np.linspace(lo, hi, _SEED_FREQUENCIES)
     largest = 0.0
-    e = spring_polynomial(pb)
+    seeder = seeder_for(pb, grid)
     for W in grid:
-        for seed in _seeds_at(pb, float(W), e, 1.0, pb.odd, first_only=True):
-            largest = max(largest, float(np.max(np.abs(seed.harmonics[1]))))
+        for seed in seeder.at(float(W), 1.0, first_only=True):
+            largest = max(largest, *(float(np.max(np.abs(u))) for u in seed.harmonics.values()))
     width = hi - lo
     outer = (max(lo - width, 0.02 * lo), hi + width)
     scale = largest or 1.0
     variation = variation_of(system, *_strongest(pb, scale, hi)) if system.size > 3 else variation_of(system)
-    return Search(system, pb, variation, lo, hi, outer, scale, width, harmonics)
+    return Search(system, pb, seeder, variation, lo, hi, outer, scale, width, harmonics)
 
 
 def _strongest(pb: Problem, scale: float, hi: float) -> tuple[float, float]:
@@ -128,16 +136,6 @@ def _strongest(pb: Problem, scale: float, hi: float) -> tuple[float, float]:
     return float(np.max(np.abs(slopes))), hi
 
 
-def _seeds_at(pb: Problem, W: float, e: Floats | None, scale: float, odd: bool, first_only: bool = False) -> list[Seed]:
-    if e is not None:
-        seeds = single_element_seeds(pb, W, e)
-        return [seed for seed in seeds if 3 not in seed.harmonics] if first_only else seeds
-    if first_only:
-        S, F = stiffness_at(pb, 1, W)
-        return [Seed(W, {1: np.asarray(np.linalg.solve(S, F), dtype=complex)})]
-    return searched_seeds(pb, W, scale, odd)
-
-
 def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
     """Frequencies for starts: all first-harmonic roots; free third harmonics; near misses of further roots.
 
@@ -145,8 +143,8 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
     such range, and both edges, stand for all.
     """
     spread = np.linspace(search.lo, search.hi, _SEED_FREQUENCIES)
-    e = spring_polynomial(search.problem)
-    if e is None or e.size != 2 or e[0] != 0 or not search.problem.odd:
+    e = search.seeder.spring
+    if e is None or e.size != 2 or e[0] != 0 or search.seeder.buckled:
         return np.linspace(search.lo, search.hi, 3 * _SEED_FREQUENCIES), np.empty(0), np.empty(0)
     grid = np.linspace(search.lo, search.hi, _GRID)
     counts, excess = np.empty(_GRID, np.int64), np.empty(_GRID)
@@ -163,24 +161,46 @@ def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
 
     Branches with even harmonics that leave odd ones are followed only if `asymmetric`.
     """
-    pb = search.problem
-    e = spring_polynomial(pb)
-    odd = pb.odd
+    odd, seeder = search.problem.odd, search.seeder
     tracks: list[Track] = []
     complete_at, beside, almost = seed_frequencies(search)
-    seeds = [seed for W in complete_at for seed in _seeds_at(pb, float(W), e, search.x_scale, odd)]
-    seeds += [seed for W in beside for seed in _seeds_at(pb, float(W), e, search.x_scale, odd) if 3 in seed.harmonics]
-    seeds += [seed for W in almost for seed in almost_seeds(pb, float(W), e[1])] if e is not None else []
-    _follow_new(search, seeds, tracks)
-    if e is not None and odd and _third_harmonic(search, tracks) > _STRONG_THIRD:
+    seeds = [seed for W in complete_at for seed in seeder.at(float(W), search.x_scale)]
+    seeds += [seed for W in beside for seed in seeder.at(float(W), search.x_scale) if 3 in seed.harmonics]
+    if seeder.spring is not None:
+        seeds += [seed for W in almost for seed in almost_seeds(search.problem, float(W), seeder.spring[1])]
+    about_others = [seed for seed in seeds if odd and 0 in seed.harmonics]
+    _follow_new(search, [seed for seed in seeds if not odd or 0 not in seed.harmonics], tracks)
+    if seeder.spring is not None and _third_harmonic(search, tracks) > _STRONG_THIRD:
         spread = np.linspace(search.lo, search.hi, _STRONG_FREQUENCIES)
-        _follow_new(search, [seed for W in spread for seed in two_harmonic_seeds(pb, float(W), e)], tracks)
+        strong = [seed for W in spread for seed in two_harmonic_seeds(search.problem, float(W), seeder.spring)]
+        _follow_new(search, strong, tracks)
     tracks = [track for track in tracks if complete(search, track)]
     for track in list(tracks) if asymmetric else []:
         tracks += asymmetric_branches(search, track, tracks)
+    if asymmetric:
+        tracks += _buckled_branches(search, about_others, tracks)
     for track in tracks:
         _join(search, track, tracks)
     return sorted(tracks, key=lambda track: _response_at(track, search.lo))
+
+
+def _buckled_branches(search: Search, seeds: list[Seed], known: list[Track]) -> list[Track]:
+    """Branches of an odd system about another mean than 0 that no loss of symmetry in the window has led to.
+
+    One of each mirrored pair is followed.
+    """
+    tracks: list[Track] = []
+    for seed in seeds:
+        start = solve_seed(search, seed, False)
+        if start is None or np.linalg.norm(_even_part(search, *start)) < 1e-3 * search.x_scale:
+            continue
+        others = [track for track in known + tracks if not track.odd]
+        if any(_meets(search, track, *start) for track in others):
+            continue
+        track = _half_of_pair(search, _followed(search, False, *start))
+        if complete(search, track):
+            tracks.append(track)
+    return tracks
 
 
 def _follow_new(search: Search, seeds: list[Seed], tracks: list[Track]) -> None:
@@ -268,7 +288,8 @@ def solve_seed(search: Search, seed: Seed, odd: bool) -> tuple[Floats, int] | No
         X[at : at + 2 * r] = np.column_stack([u.real, u.imag]).ravel()
     H = search.harmonics or max(3, *seed.harmonics)
     ok, H, truncation = solve_at(pb, odd, seed.frequency, X, H, search.highest, search.goal, 25)
-    if not ok or truncation > max(search.goal, 1e-6) or not np.all(np.isfinite(X)):
+    most = 1e-6 if search.smooth else _WORST
+    if not ok or truncation > max(search.goal, most) or not np.all(np.isfinite(X)):
         return None
     X[unknowns(pb, H, odd)] = seed.frequency
     return X, H
@@ -411,9 +432,13 @@ def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> li
 
 def _is_same(search: Search, track: Track, other: Track) -> bool:
     """Whether two asymmetric branches are one, or mirror images of one another, judged where the first is least odd."""
-    pb, r = search.problem, search.problem.M11.shape[0]
     i = int(np.argmax([np.linalg.norm(_even_part(search, y, H)) for y, H in zip(track.ys, track.Hs, strict=True)]))
-    y, H = track.ys[i], int(track.Hs[i])
+    return _meets(search, other, track.ys[i], int(track.Hs[i]))
+
+
+def _meets(search: Search, other: Track, y: Floats, H: int) -> bool:
+    """Whether a solution or its mirror image lies on an asymmetric branch."""
+    pb, r = search.problem, search.problem.M11.shape[0]
     mirrored = y.copy()
     mirrored[: unknowns(pb, H, False)].reshape(-1, 2 * r)[::2] *= -1
     return _lies_on(search, other, y, H) or _lies_on(search, other, mirrored, H)

@@ -16,7 +16,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.linalg
 
-from frahm.absorbers import Polynomial
 from frahm.absorbers.packed import pack_laws
 from frahm.arrays import Complexes, Floats
 from frahm.errors import ParameterError
@@ -48,6 +47,7 @@ class Problem(NamedTuple):
     codes: np.ndarray  # (E, 3)
     table: Floats
     degree: int  # of the polynomial forces; 0 if a law is no polynomial
+    rates: bool  # whether a force depends on the velocity otherwise than linearly
     forcing: Floats  # (knots, 5): Omega and four coefficients of the factor on the forcing from there on; empty: 1
     odd: bool  # whether every law is odd, so that odd harmonics form a closed set
 
@@ -77,7 +77,7 @@ def condense(system: System, forcing: Floats | None = None) -> Problem:
     outputs = np.vstack([system.output, first, np.eye(system.size)]) @ T
     a2, a1, a0 = (np.ascontiguousarray((block[:r, r:] @ R).T) for block in blocks)
     b2, b1, b0 = (np.ascontiguousarray(L @ block[r:, :r]) for block in blocks)
-    nonlinear = [_without_linear_part(element.law) for element in active]
+    nonlinear = [element.law.without_linear_part() for element in active]
     codes, table = pack_laws(nonlinear)
     M11, C11, K11 = (np.ascontiguousarray(block[:r, :r]) for block in blocks)
     return Problem(
@@ -89,7 +89,8 @@ def condense(system: System, forcing: Floats | None = None) -> Problem:
         directions=np.ascontiguousarray(directions),
         codes=codes,
         table=table,
-        degree=max(law.coefficients.size for law in nonlinear),
+        degree=max(law.coefficients.size for law in nonlinear) if all(law.is_polynomial for law in nonlinear) else 0,
+        rates=any(law.friction is not None for law in nonlinear),
         forcing=np.zeros((0, 5)) if forcing is None else np.ascontiguousarray(forcing),
         odd=all(law.is_odd for law in nonlinear),
     )  # fmt: skip
@@ -139,10 +140,6 @@ def linear_part(system: System) -> tuple[Floats, Floats]:
         C += element.law.damping * outer
         K += element.law.coefficients[0] * outer
     return C, K
-
-
-def _without_linear_part(law: Polynomial) -> Polynomial:
-    return Polynomial(np.concatenate([[0.0], law.coefficients[1:]]))
 
 
 def _relative_coordinates(N: Floats) -> tuple[Floats, Floats]:

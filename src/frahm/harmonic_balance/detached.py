@@ -91,8 +91,8 @@ def _quadratic_form(equations: Equations, orbit: Orbit) -> float:
     u = np.asarray(np.linalg.lstsq(orbit.J, -by_frequency.rate, rcond=1e-10)[0], dtype=float)
     Kv, Ku = orbit.curvature_matrix(v), orbit.curvature_matrix(u)
     vv = w @ (Kv @ v)
-    vu = w @ (Kv @ u + by_frequency.applied(orbit.J, v))
-    uu = w @ (Ku @ u + 2 * by_frequency.applied(orbit.J, u) + _second_by_frequency(equations, orbit))
+    vu = w @ (Kv @ u + by_frequency.applied(orbit, v))
+    uu = w @ (Ku @ u + 2 * by_frequency.applied(orbit, u) + _second_by_frequency(equations, orbit))
     return float(vv * uu - vu * vu)
 
 
@@ -105,6 +105,8 @@ def _second_by_frequency(equations: Equations, orbit: Orbit) -> Floats:
         S2, F2 = _second_derivatives(orbit.problem, 1j * k * orbit.W)
         value = (1j * k) ** 2 * (S2 @ u - (F2 if k == 1 else 0))
         out[2 * r * m : 2 * r * (m + 1)] = np.column_stack([value.real, value.imag]).ravel()
+    if orbit.problem.rates:
+        out += equations.projected(orbit.problem, orbit.derivatives[3] * (orbit.w / orbit.W) ** 2)
     return out
 
 

@@ -1,9 +1,10 @@
 """Floquet multipliers from the variational equation about a periodic orbit, integrated by Taylor series.
 
-M dx'' + C dx' + (K + sum_e n_e p_e(t) n_e^T) dx = 0 with p_e the slope of the element's force along the orbit. On each
-step p_e is a polynomial through Chebyshev points and the solution a power series. For an odd orbit half a period
-suffices: with the symmetry (x, t) -> (-x, t + T/2) the half map -Phi(T/2) has the multipliers' square roots; +1 is a
-saddle-node, -1 a loss of symmetry, a complex pair a Neimark-Sacker point.
+M dx'' + (C + sum_e n_e q_e(t) n_e^T) dx' + (K + sum_e n_e p_e(t) n_e^T) dx = 0 with p_e and q_e the slopes of the
+element's force by displacement and velocity along the orbit. On each step they are polynomials through Chebyshev points
+and the solution a power series; where laws are no polynomials the steps are as short as the slopes ask for. For an odd
+orbit half a period suffices: with the symmetry (x, t) -> (-x, t + T/2) the half map -Phi(T/2) has the multipliers'
+square roots; +1 is a saddle-node, -1 a loss of symmetry, a complex pair a Neimark-Sacker point.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.linalg
 
-from frahm.absorbers.packed import law_force_and_slopes
+from frahm.absorbers.packed import law_force_and_slopes, polynomial_and_slopes
 from frahm.arrays import Floats
 from frahm.compiled import kernel
 from frahm.harmonic_balance.condensation import linear_part
@@ -28,8 +29,11 @@ _LANES = 4
 _ADVANCE = 1.2  # fastest motion per step [rad]
 _REACHED = 10.0  # up to this multiple of the frequency a mode does not follow statically
 _TURN = 2.0  # highest harmonic per step [rad]
+_RESOLVED = 1e-9  # last Chebyshev coefficients of a slope, relative to its largest value, times the share of the step
+_SHORTEST = 1e-4  # step, as a share of the first one
 _POINTS = 0.5 - 0.5 * np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
 _TO_POWERS = np.linalg.inv(_POINTS[:, None] ** np.arange(_NODES))
+_TO_CHEBYSHEV = np.linalg.inv(np.polynomial.chebyshev.chebvander(2 * _POINTS - 1, _NODES - 1))
 
 
 class Variation(NamedTuple):
@@ -55,20 +59,22 @@ def variation_of(system: System, steepest: float = math.inf, frequency: float = 
     system : System
     steepest : float
         Largest slope p_e [N/m] expected. Fast modes that such a slope cannot excite parametrically against their
-        damping are replaced by their static flexibility (`_lively`); infinite: none are.
+        damping are replaced by their static flexibility (`_lively`); infinite: none are, nor where elements have stops
+        or friction, whose slopes hold high harmonics.
     frequency : float
         Omega [rad/s].
     """
     C, K = linear_part(system)
     active = [element.direction for element in system.elements if not element.law.is_linear]
     N = np.column_stack(active) if active else np.zeros((system.size, 0))
-    if not math.isfinite(steepest) or not np.allclose(K, K.T, rtol=1e-12, atol=0):
+    smooth = all(element.law.is_smooth for element in system.elements)
+    if not smooth or not math.isfinite(steepest) or not np.allclose(K, K.T, rtol=1e-12, atol=0):
         inverse = np.linalg.inv(system.mass)
         return _variation(inverse @ K, inverse @ C, inverse @ N, N.T, np.zeros((N.shape[1], N.shape[1])))
     squares, modes = scipy.linalg.eigh(K, system.mass)
-    squares = np.maximum(squares, 0.0)
+    squares[np.abs(squares) < 1e-12 * np.max(np.abs(squares))] = 0.0  # rounding; less than zero is a buckled system
     damping, feel = modes.T @ C @ modes, N.T @ modes
-    keep = _lively(np.sqrt(squares), np.diag(damping), np.sum(feel**2, axis=0), steepest, frequency)
+    keep = _lively(np.sqrt(np.maximum(squares, 0.0)), np.diag(damping), np.sum(feel**2, axis=0), steepest, frequency)
     rest = feel[:, ~keep] / squares[~keep] @ feel[:, ~keep].T if np.any(~keep) else np.zeros((len(feel), len(feel)))
     return _variation(np.diag(squares[keep]), damping[np.ix_(keep, keep)], feel[:, keep].T, feel[:, keep], rest)
 
@@ -116,23 +122,42 @@ def monodromy(pb, va, H, odd, W, u, Phi):
     turn = W * _reach(H, u) * max(1.0, 0.5 * (pb.degree - 1))  # the slope of a power p has harmonics up to (p - 1) H
     steps = math.ceil(max(span * math.sqrt(square) / _ADVANCE, span * turn / _TURN, 3.0))
     h = span / steps
+    adaptive = pb.degree == 0
     Phi[:] = 0.0
     for i in range(m):
         Phi[i, i] = 1.0
     X, V, Z = np.zeros((_ORDER + 1, n, _LANES)), np.zeros((_ORDER + 1, n, _LANES)), np.zeros((_ORDER + 1, E, _LANES))
     slopes, values, p = np.zeros((E, E)), np.empty((E, E, _NODES)), np.empty((E, E, _NODES))
+    rates, rate, q = np.zeros((E, _NODES)), np.zeros(E), np.zeros((E, _NODES))
+    Y = np.zeros((_ORDER if pb.rates else 0, E, _LANES))
     soft = np.any(va.flexibility != 0.0)
-    for step in range(steps):
+    base, done, length = h, 0.0, 1.0  # in steps of the length `base`
+    while done < steps:
+        length = min(length, steps - done)
+        h = base * length
         for j in range(_NODES):
-            tau = W * h * (step + _POINTS[j])
+            tau = W * base * (done + length * _POINTS[j])
             for e in range(E):
                 z = element_displacement(pb, e, H, odd, u, tau)
                 code = pb.codes[e]
-                _, slopes[e, e], _ = law_force_and_slopes(code[0], code[1], code[2], pb.table, z, 0.0)
+                if adaptive:
+                    w = element_velocity(pb, e, H, odd, W, u, tau) if pb.rates else 0.0
+                    _, slopes[e, e], rates[e, j] = law_force_and_slopes(code[0], code[1], code[2], pb.table, z, w)
+                else:
+                    _, slopes[e, e], _ = polynomial_and_slopes(code[1], code[2], pb.table, z, 0.0)
             felt = _behind(slopes, va.flexibility) if soft else slopes
             for e in range(E):
                 for f in range(E):
                     values[e, f, j] = felt[e, f]
+        if adaptive:
+            tail = _unresolved(va, values, rates, slope, rate, h)
+            if tail * length > _RESOLVED and length > _SHORTEST:
+                length *= 0.5
+                continue
+        if pb.rates:
+            for e in range(E):
+                for i in range(_NODES):
+                    q[e, i] = np.sum(_TO_POWERS[i] * rates[e])
         for e in range(E):
             for f in range(E):
                 for i in range(_NODES):
@@ -145,7 +170,7 @@ def monodromy(pb, va, H, odd, W, u, Phi):
             for i in range(n):
                 for c in range(width):
                     X[0, i, c], V[0, i, c] = Phi[i, start + c], Phi[n + i, start + c]
-            _taylor_step(va, p, h, X, V, Z)
+            _taylor_step(va, p, q, h, X, V, Z, Y)
             for i in range(n):
                 for c in range(width):
                     x, v = X[_ORDER, i, c], V[_ORDER, i, c]
@@ -153,6 +178,29 @@ def monodromy(pb, va, H, odd, W, u, Phi):
                         x += X[k, i, c]
                         v += V[k, i, c]
                     Phi[i, start + c], Phi[n + i, start + c] = x, v
+        done += length
+        if adaptive and tail * length < 1e-2 * _RESOLVED:
+            length = min(2.0 * length, 1.0)
+
+
+@kernel
+def _unresolved(va, values, rates, steepest, fastest, h):
+    """Last Chebyshev coefficients of slopes and rates on a step, relative to their largest values so far.
+
+    Infinite if the step [s] is too long for the power series of the motion.
+    """
+    worst, square, rate = 0.0, va.fastest * va.fastest, 0.0
+    for e in range(steepest.size):
+        for j in range(_NODES):
+            steepest[e] = max(steepest[e], abs(values[e, e, j]))
+            fastest[e] = max(fastest[e], abs(rates[e, j]))
+    for e in range(steepest.size):
+        square += va.hardest[e] * np.max(np.abs(values[e, e]))
+        rate += va.hardest[e] * np.max(np.abs(rates[e]))
+        for i in range(_NODES - 2, _NODES):
+            worst = max(worst, abs(np.sum(_TO_CHEBYSHEV[i] * values[e, e])) / max(steepest[e], 1e-300))
+            worst = max(worst, abs(np.sum(_TO_CHEBYSHEV[i] * rates[e])) / max(fastest[e], 1e-300))
+    return math.inf if h * math.sqrt(square) > _ADVANCE or h * rate > _ADVANCE else worst
 
 
 @kernel
@@ -178,6 +226,18 @@ def element_displacement(pb, e, H, odd, u, tau):
             z += pb.directions[i, e] * (u[k, i].real * c - u[k, i].imag * s)
         c, s = c * c1 - s * s1, s * c1 + c * s1
     return z
+
+
+@kernel
+def element_velocity(pb, e, H, odd, W, u, tau):
+    """w_e at the phase tau [rad] from the harmonics u (H + 5, r)."""
+    first, step = (1, 2) if odd else (0, 1)
+    w = 0.0
+    for k in range(first, H + 1, step):
+        c, s = k * W * math.cos(k * tau), k * W * math.sin(k * tau)
+        for i in range(u.shape[1]):
+            w -= pb.directions[i, e] * (u[k, i].real * s + u[k, i].imag * c)
+    return w
 
 
 @kernel
@@ -207,11 +267,18 @@ def _steepest(pb, H, odd, u, slope):
 
 
 @kernel
-def _taylor_step(va, p, h, X, V, Z):
+def _taylor_step(va, p, q, h, X, V, Z, Y):
     """Power series of some columns over one step, in the time scaled to the step: term k is the k-th summand."""
     n, E = va.K.shape[0], va.feel.shape[0]
+    rates = Y.shape[0] > 0
     for k in range(_ORDER):
         factor = h / (k + 1.0)
+        if rates:
+            for e in range(E):
+                Y[k, e, :] = 0.0
+                for j in range(n):
+                    for c in range(_LANES):
+                        Y[k, e, c] += va.feel[e, j] * V[k, j, c]
         for e in range(E):
             for c in range(_LANES):
                 Z[k, e, c] = 0.0
@@ -233,10 +300,15 @@ def _taylor_step(va, p, h, X, V, Z):
             for c in range(_LANES):
                 Z[_ORDER, e, c] = 0.0
             for f in range(E):
-                for q in range(min(k, _NODES - 1) + 1):
-                    weight = p[e, f, q] * factor
+                for m in range(min(k, _NODES - 1) + 1):
+                    weight = p[e, f, m] * factor
                     for c in range(_LANES):
-                        Z[_ORDER, e, c] += weight * Z[k - q, f, c]
+                        Z[_ORDER, e, c] += weight * Z[k - m, f, c]
+            if rates:
+                for m in range(min(k, _NODES - 1) + 1):
+                    weight = q[e, m] * factor
+                    for c in range(_LANES):
+                        Z[_ORDER, e, c] += weight * Y[k - m, e, c]
             for i in range(n):
                 push = va.push[i, e]
                 if push != 0.0:

@@ -20,7 +20,7 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
     """Replace the `count` largest multipliers of the (half) map by those of the complete host, in place.
 
     Each is the start of an inverse iteration with Rayleigh quotients on Hill's matrix; where that leads elsewhere or
-    does not converge the value is kept.
+    does not converge the value is kept. For forces whose dependence on the velocity is linear.
     """
     r, E = pb.M11.shape[0], pb.directions.shape[1]
     step = 2 if odd else 1
@@ -29,9 +29,10 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
     n = harmonics * r
     co, si = fourier_tables(H, odd, sample_count(pb, H, odd))
     G, p = np.empty(H + 5, np.complex128), np.empty(2 * H + 1, np.complex128)
+    q = np.empty(2 * H + 1, np.complex128)
     P = np.zeros((n, n), np.complex128)
     for e in range(E):
-        element_force(pb, e, H, odd, u, co, si, G, p)
+        element_force(pb, e, H, odd, W, u, co, si, G, p, q)
         for a in range(harmonics):
             for b in range(harmonics):
                 m = (a - b) * step

@@ -3,7 +3,8 @@
 u(t) = Re sum_k u_k e^{ik Omega t} over k = first, first + step, ..., H (odd harmonics: first 1, step 2; all: 0, 1).
 The unknown vector holds Re u_k, Im u_k of every coordinate, harmonic by harmonic; the imaginary part of harmonic 0
 is kept at zero by an equation of its own. Time samples cover half a period for odd harmonics, a whole one otherwise,
-dense enough for polynomial forces to be balanced without aliasing.
+dense enough for polynomial forces to be balanced without aliasing; forces of other laws are sampled sixteen times per
+period of the highest harmonic, which leaves the aliasing far below the truncation.
 """
 
 from __future__ import annotations
@@ -12,8 +13,10 @@ import math
 
 import numpy as np
 
-from frahm.absorbers.packed import law_force_and_slopes
+from frahm.absorbers.packed import law_force_and_slopes, polynomial_and_slopes
 from frahm.compiled import kernel
+
+_FEWEST_SAMPLES = 200  # per period, for laws that are no polynomials
 
 
 @kernel
@@ -31,8 +34,7 @@ def unknowns(pb, H, odd):
 @kernel
 def sample_count(pb, H, odd):
     """Number of time samples: enough for G_k up to k = H + 4 to be free of aliasing from degree * H."""
-    degree = pb.degree if pb.degree > 0 else 15
-    full = (degree + 1) * H + 6
+    full = (pb.degree + 1) * H + 6 if pb.degree > 0 else max(16 * H + 6, _FEWEST_SAMPLES)
     return full // 2 + 1 if odd else full + 1
 
 
@@ -146,10 +148,11 @@ def fourier_tables(H, odd, N):
 
 
 @kernel
-def element_force(pb, e, H, odd, u, co, si, G, p):
-    """Harmonics of one element's force: G (H + 5,) with Re sum G_k e^{ik tau}, and of its slope: p (2 H + 1,).
+def element_force(pb, e, H, odd, W, u, co, si, G, p, q):
+    """Harmonics of one element's force: G (H + 5,) with Re sum G_k e^{ik tau}, and of its slopes: p, q (2 H + 1,).
 
-    p_m = mean of dg/dz e^{-im tau}. Only harmonics of the right parity are filled for odd sets.
+    p_m = mean of dg/dz e^{-im tau} and q_m of dg/dw, which is filled only if a force depends on the velocity
+    (`pb.rates`). Only harmonics of the right parity are filled for odd sets.
     """
     N = co.shape[1]
     r = pb.M11.shape[0]
@@ -163,8 +166,23 @@ def element_force(pb, e, H, odd, u, co, si, G, p):
         for j in range(N):
             z[j] += re * co[k, j] - im * si[k, j]
     g, slope = np.empty(N), np.empty(N)
-    for j in range(N):
-        g[j], slope[j], _ = law_force_and_slopes(pb.codes[e, 0], pb.codes[e, 1], pb.codes[e, 2], pb.table, z[j], 0.0)
+    mstep = 2 if odd else 1
+    if pb.rates:
+        w, rate = np.zeros(N), np.empty(N)
+        add_velocity(pb, e, H, odd, W, u, co, si, w)
+        for j in range(N):
+            g[j], slope[j], rate[j] = law_force_and_slopes(
+                pb.codes[e, 0], pb.codes[e, 1], pb.codes[e, 2], pb.table, z[j], w[j]
+            )
+        _mean_harmonics(rate, H, mstep, co, si, q)
+    elif pb.degree > 0:
+        for j in range(N):
+            g[j], slope[j], _ = polynomial_and_slopes(pb.codes[e, 1], pb.codes[e, 2], pb.table, z[j], 0.0)
+    else:
+        for j in range(N):
+            g[j], slope[j], _ = law_force_and_slopes(
+                pb.codes[e, 0], pb.codes[e, 1], pb.codes[e, 2], pb.table, z[j], 0.0
+            )
     for k in range(first, H + 5, step):
         re = im = 0.0
         for j in range(N):
@@ -172,8 +190,27 @@ def element_force(pb, e, H, odd, u, co, si, G, p):
             im -= g[j] * si[k, j]
         factor = (1.0 if k == 0 else 2.0) / N
         G[k] = complex(re * factor, im * factor)
-    mstep = 2 if odd else 1
-    for m in range(0, 2 * H + 1, mstep):
+    _mean_harmonics(slope, H, mstep, co, si, p)
+
+
+@kernel
+def add_velocity(pb, e, H, odd, W, u, co, si, w):
+    """Add the samples of an element's velocity to w (N,)."""
+    first, step = (1, 2) if odd else (0, 1)
+    for k in range(first, H + 1, step):
+        re = im = 0.0
+        for i in range(u.shape[1]):
+            re += pb.directions[i, e] * u[k, i].real * k * W
+            im += pb.directions[i, e] * u[k, i].imag * k * W
+        for j in range(w.size):
+            w[j] -= re * si[k, j] + im * co[k, j]
+
+
+@kernel
+def _mean_harmonics(slope, H, step, co, si, p):
+    """p_m = mean of the samples times e^{-im tau} for m = 0, step, ..., 2 H."""
+    N = slope.size
+    for m in range(0, 2 * H + 1, step):
         re = im = 0.0
         if m < H + 5:
             for j in range(N):
@@ -226,9 +263,10 @@ def residual_and_jacobian(pb, H, odd, W, X, co, si, R, J):
             R[row], R[row + 1] = total.real, total.imag
             J[row, n], J[row + 1, n] = slope.real, slope.imag
     G, p = np.empty(H + 5, np.complex128), np.empty(2 * H + 1, np.complex128)
+    q = np.empty(2 * H + 1, np.complex128)
     beyond = 0.0
     for e in range(E):
-        element_force(pb, e, H, odd, u, co, si, G, p)
+        element_force(pb, e, H, odd, W, u, co, si, G, p, q)
         for k in range(H + step, H + 5, step):
             beyond += abs(G[k]) ** 2
         for m in range(count):
@@ -238,7 +276,10 @@ def residual_and_jacobian(pb, H, odd, W, X, co, si, R, J):
                 row = 2 * (m * r + i)
                 R[row] += pb.directions[i, e] * G[k].real
                 R[row + 1] += pb.directions[i, e] * G[k].imag
-        _add_slopes(pb, e, first, step, count, p, J)
+        add_slopes(pb, e, first, step, count, p, J)
+        if pb.rates:
+            add_rates(pb, e, first, step, count, W, q, J)
+            _add_rate_by_frequency(pb, e, first, step, count, W, u, q, J, n)
     if not odd:
         for i in range(r):  # harmonic 0 is real
             row = 2 * i + 1
@@ -249,7 +290,7 @@ def residual_and_jacobian(pb, H, odd, W, X, co, si, R, J):
 
 
 @kernel
-def _add_slopes(pb, e, first, step, count, p, J):
+def add_slopes(pb, e, first, step, count, p, J):
     """Add d G_k = sum_l p_{k-l} du_l + p_{k+l} conj(du_l) of one element to the Jacobian."""
     r = pb.M11.shape[0]
     for mk in range(count):
@@ -273,3 +314,52 @@ def _add_slopes(pb, e, first, step, count, p, J):
                     J[row, column + 1] += weight * ri
                     J[row + 1, column] += weight * ir
                     J[row + 1, column + 1] += weight * ii
+
+
+@kernel
+def add_rates(pb, e, first, step, count, W, q, J):
+    """Add d G_k = sum_l q_{k-l} dw_l + q_{k+l} conj(dw_l), dw_l = il Omega du_l, of one element to the Jacobian."""
+    r = pb.M11.shape[0]
+    for mk in range(count):
+        k = first + mk * step
+        for ml in range(count):
+            m = first + ml * step
+            minus, plus = _rate_entries(k, m, W, q)
+            rr, ri = minus.real + plus.real, -minus.imag + plus.imag
+            ir, ii = minus.imag + plus.imag, minus.real - plus.real
+            for i in range(r):
+                for j in range(r):
+                    weight = pb.directions[i, e] * pb.directions[j, e]
+                    row, column = 2 * (mk * r + i), 2 * (ml * r + j)
+                    J[row, column] += weight * rr
+                    J[row, column + 1] += weight * ri
+                    J[row + 1, column] += weight * ir
+                    J[row + 1, column + 1] += weight * ii
+
+
+@kernel
+def _rate_entries(k, m, W, q):
+    """Factors of du_m and conj(du_m) in dG_k from the dependence on the velocity."""
+    minus = q[k - m] if k >= m else q[m - k].conjugate()
+    factor = 1j * m * W * (0.5 if k == 0 else 1.0)  # the mean of the force is real
+    return factor * minus, -factor * q[k + m]
+
+
+@kernel
+def _add_rate_by_frequency(pb, e, first, step, count, W, u, q, J, n):
+    """Add the derivative of G_k by Omega at fixed displacements to column n of the Jacobian."""
+    r = pb.M11.shape[0]
+    for mk in range(count):
+        k = first + mk * step
+        total = 0j
+        for ml in range(count):
+            m = first + ml * step
+            own = 0j
+            for j in range(r):
+                own += pb.directions[j, e] * u[m, j]
+            minus, plus = _rate_entries(k, m, 1.0, q)
+            total += minus * own + plus * own.conjugate()
+        for i in range(r):
+            row = 2 * (mk * r + i)
+            J[row, n] += pb.directions[i, e] * total.real
+            J[row + 1, n] += pb.directions[i, e] * total.imag

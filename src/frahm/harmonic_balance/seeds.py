@@ -1,9 +1,10 @@
 """Where branches are looked for: every root of the first-harmonic problem, and of the superharmonic ones.
 
-With one nonlinear element whose spring is a polynomial, the first-harmonic problem S Z + k(|Z|^2) Z = F is one
+With one nonlinear element whose spring is an odd polynomial, the first-harmonic problem S Z + k(|Z|^2) Z = F is one
 polynomial in |Z|^2, so its roots are known completely at any frequency; the same holds for a free third harmonic beside
-a given first one. With several elements the roots are searched by Newton's method from a fixed, spread set of starts:
-the result says so.
+a given first one. With one element of any other law, and for motions about another mean than 0, the roots are searched
+on a dense grid of amplitudes (`describing`). With several elements they are searched by Newton's method from a fixed,
+spread set of starts. The result says which.
 """
 
 from __future__ import annotations
@@ -13,9 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
 from frahm.harmonic_balance.condensation import Problem, unknowns
+from frahm.harmonic_balance.describing import Table, amplitude_table, outer_balances
 from frahm.harmonic_balance.kernels import stiffness
 from frahm.harmonic_balance.newton import solve_at
 from frahm.polynomials import universal_roots
@@ -73,8 +76,8 @@ def stiffness_at(pb: Problem, k: int, W: float) -> tuple[Complexes, Complexes]:
 
 
 def spring_polynomial(pb: Problem) -> Floats | None:
-    """Coefficients e_i of k(N) = sum_i e_i N^i, the equivalent stiffness at N = |Z|^2, for one polynomial element."""
-    if pb.directions.shape != (1, 1) or pb.degree == 0:
+    """Coefficients e_i of k(N) = sum_i e_i N^i, equivalent stiffness at N = |Z|^2, for one odd polynomial element."""
+    if pb.directions.shape != (1, 1) or pb.degree == 0 or not pb.odd:
         return None
     start, count = pb.codes[0, 1], pb.codes[0, 2]
     c = pb.table[start + 1 : start + 1 + count][::-1]  # c_1 ... c_p
@@ -106,25 +109,7 @@ def single_element_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
         Z = F[0] / (S[0, 0] + np.polynomial.polynomial.polyval(N, e))
         seeds.append(Seed(W, {1: np.array([Z])}))
         seeds += [Seed(W, {1: np.array([Z]), 3: np.array([Z3])}) for Z3 in _third_harmonics(S3[0, 0], Z, e)]
-    return seeds if pb.odd else [other for seed in seeds for other in _with_means(pb, seed)]
-
-
-def _with_means(pb: Problem, seed: Seed) -> list[Seed]:
-    """The seed beside every mean displacement that balances the mean force of an element that is not odd.
-
-    The mean of (m + a cos)^k is the sum over j of binom(k, 2j) binom(2j, j) m^(k - 2j) (a/2)^(2j).
-    """
-    d = pb.directions[0, 0]
-    a = abs(d * seed.harmonics[1][0])
-    start, count = pb.codes[0, 1], pb.codes[0, 2]
-    mean = np.zeros(count + 1)
-    mean[1] = stiffness_at(pb, 0, seed.frequency)[0][0, 0].real / d**2
-    for k, c in enumerate(pb.table[start + 1 : start + 1 + count][::-1], start=1):
-        for j in range(k // 2 + 1):
-            mean[k - 2 * j] += c * math.comb(k, 2 * j) * math.comb(2 * j, j) * (a / 2) ** (2 * j)
-    roots = np.polynomial.Polynomial(mean).trim().roots()
-    real = roots[np.abs(roots.imag) < 1e-9 * (np.abs(roots) + a)].real
-    return [Seed(seed.frequency, {0: np.array([m / d + 0j]), **seed.harmonics}) for m in real] or [seed]
+    return seeds
 
 
 def almost_seeds(pb: Problem, W: float, k: float) -> list[Seed]:
@@ -179,22 +164,90 @@ def two_harmonic_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
 
 
 def searched_seeds(pb: Problem, W: float, scale: float, odd: bool) -> list[Seed]:
-    """First-harmonic solutions with several elements, searched from a fixed spread set of starts."""
+    """First-harmonic solutions with several elements, searched from a fixed spread set of starts.
+
+    With `odd` those without a mean, otherwise with the means they come with.
+    """
     from scipy.stats import qmc  # takes half a second to load
 
     r = pb.M11.shape[0]
-    sample = qmc.Halton(2 * r, seed=1).random(_STARTS)
+    sample = qmc.Halton((2 if odd else 3) * r, seed=1).random(_STARTS)
     radius = scale * 10 ** (-2.5 + 2.8 * sample[:, :r])
-    starts = radius * np.exp(2j * np.pi * sample[:, r:])
+    starts = radius * np.exp(2j * np.pi * sample[:, r : 2 * r])
     S, F = stiffness_at(pb, 1, W)
     starts = np.vstack([np.linalg.solve(S, F), np.zeros(r), starts])
+    means = np.zeros((len(starts), r))
+    if not odd:
+        means[2:] = 1.5 * scale * (2 * sample[:, 2 * r :] - 1)
     found: list[Complexes] = []
-    for start in starts:
+    for start, mean in zip(starts, means, strict=True):
         X = np.zeros(unknowns(pb, 1, odd) + 1)
         at = 0 if odd else 2 * r
         X[at : at + 2 * r] = np.column_stack([start.real, start.imag]).ravel()
+        if not odd:
+            X[: 2 * r : 2] = mean
         ok, _, _ = solve_at(pb, odd, W, X, 1, 1, math.inf, 30)
-        u = X[at : at + 2 * r : 2] + 1j * X[at + 1 : at + 2 * r : 2]
+        u = X[: at + 2 * r : 2] + 1j * X[1 : at + 2 * r : 2]
         if ok and not any(np.max(np.abs(u - other)) < 1e-6 * (np.max(np.abs(u)) + 1e-12 * scale) for other in found):
             found.append(u)
-    return [Seed(W, {1: u}) for u in found]
+    return [Seed(W, {1: u} if odd else {0: u[:r], 1: u[r:]}) for u in found]
+
+
+@dataclass(frozen=True)
+class Seeder:
+    """Starts at any frequency of a window: in closed form, from a table of amplitudes, or searched."""
+
+    problem: Problem
+    spring: Floats | None  # equivalent stiffness of one odd polynomial element, see `spring_polynomial`
+    table: Table | None  # of one element otherwise, or of its motions about other means
+    buckled: bool  # whether an odd system may have responses about another mean than 0
+
+    def at(self, W: float, scale: float, first_only: bool = False) -> list[Seed]:
+        """All starts at Omega = W [rad/s]; `first_only` leaves out free third harmonics and searches."""
+        pb = self.problem
+        seeds: list[Seed] = []
+        if self.spring is not None:
+            seeds = single_element_seeds(pb, W, self.spring)
+            seeds = [seed for seed in seeds if 3 not in seed.harmonics] if first_only else seeds
+        if self.table is not None:
+            S, F = stiffness_at(pb, 1, W)
+            for mean, u in self.table.roots(pb, W, complex(S[0, 0]), complex(F[0])):
+                still = {} if pb.odd and mean == 0 else {0: np.array([mean])}
+                seeds.append(Seed(W, {**still, 1: np.array([u])}))
+        if pb.directions.shape == (1, 1):
+            return seeds
+        if first_only:
+            S, F = stiffness_at(pb, 1, W)
+            return [Seed(W, {1: np.asarray(np.linalg.solve(S, F), dtype=complex)})]
+        seeds = searched_seeds(pb, W, scale, pb.odd)
+        return seeds + searched_seeds(pb, W, scale, False) if self.buckled else seeds
+
+
+def seeder_for(pb: Problem, window: Floats) -> Seeder:
+    """Seeder of a condensed problem for frequencies spread over a window [rad/s]."""
+    spring = spring_polynomial(pb)
+    if pb.directions.shape != (1, 1):
+        return Seeder(pb, None, None, pb.odd and _may_buckle(pb))
+    rest = float(stiffness_at(pb, 0, 1.0)[0][0, 0].real)
+    d = float(pb.directions[0, 0])
+    if spring is not None and rest >= 0 and np.all(spring >= 0):
+        return Seeder(pb, spring, None, False)
+    buckled = bool(pb.odd and outer_balances(pb, rest / d**2)[1] > 0)
+    if spring is not None and not buckled:
+        return Seeder(pb, spring, None, False)
+    parts = [stiffness_at(pb, 1, float(W)) for W in window]
+    S, F = np.array([S[0, 0] for S, _ in parts]), np.array([F[0] for _, F in parts])
+    with np.errstate(divide="ignore"):
+        damped = np.where(S.imag > 0, np.abs(F) / S.imag, np.inf)
+        linear = np.abs(F) / np.abs(S)
+    table = amplitude_table(pb, rest, linear[np.isfinite(linear)], damped, symmetric=spring is None)
+    return Seeder(pb, spring, table, buckled)
+
+
+def _may_buckle(pb: Problem) -> bool:
+    """Whether the middle, or an element by itself, may be unstable without motion."""
+    K = stiffness_at(pb, 0, 1.0)[0].real.copy()
+    for e, code in enumerate(pb.codes):
+        slope = law_force_and_slopes(code[0], code[1], code[2], pb.table, 0.0, 0.0)[1]
+        K += slope * np.outer(pb.directions[:, e], pb.directions[:, e])
+    return bool(np.min(np.linalg.eigvalsh((K + K.T) / 2), initial=0.0) < -1e-9 * np.max(np.abs(K), initial=0.0))

@@ -8,12 +8,23 @@ from typing import Any
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance import Track, begin, connected, find_branches, is_linear, linear_growth, linear_response
+from frahm.harmonic_balance import (
+    Search,
+    Track,
+    begin,
+    connected,
+    find_branches,
+    is_linear,
+    linear_growth,
+    linear_response,
+)
+from frahm.harmonic_balance.describing import PER_DECADE
 from frahm.response.curve import ResponseCurve, SpecialPoint
 from frahm.systems import System, detuning_of
 
 _LINEAR_POINTS = 2001
 _ENDED_WELL = (0, 1)
+_ROUGH = 1e-3  # truncation that is worth a word
 
 
 def exact_curve(
@@ -32,15 +43,22 @@ def exact_curve(
         return _linear_curve(system, lo, hi, settings, forcing)
     search = begin(system, lo, hi, harmonics, forcing)
     tracks = find_branches(search)
-    settings["inventory"] = inventory_text(search.problem.directions.shape[1], search.problem.degree)
+    settings["inventory"] = inventory_text(search)
+    settings["truncation"] = max((float(np.max(track.truncations)) for track in tracks), default=math.nan)
     return _assembled(system, tracks, settings)
 
 
-def inventory_text(elements: int, degree: int) -> str:
+def inventory_text(search: Search) -> str:
     """What the search for branches proves and what it only searches."""
-    if elements == 1 and degree > 0:
+    seeder, start = search.seeder, ""
+    dense = f"first-harmonic roots searched on a dense grid of {PER_DECADE} amplitudes a decade (not proven complete)"
+    if seeder.spring is not None:
         start = "all first-harmonic roots, with every free third harmonic beside them, and near misses of further roots"
         start += " (a detached curve within about 0.1 % of its birth can be missed)"
+        if seeder.table is not None:
+            start += f"; about other means than 0 from {dense}"
+    elif seeder.table is not None:
+        start = dense
     else:
         start = "first-harmonic solutions searched from a fixed spread of starts (not proven complete)"
     return (
@@ -61,6 +79,11 @@ def _assembled(system: System, tracks: list[Track], settings: dict[str, Any]) ->
             special.append(SpecialPoint(event.kind, W, sigma, pipe, relative, number, interval, status))
             if not event.located:
                 doubtful.append(f"A {event.kind} near {W:.6g} rad/s was seen but not located.")
+        if settings["harmonics"] == "auto" and np.max(track.truncations) > _ROUGH:
+            doubtful.append(
+                f"Branch {number}: up to {100 * np.max(track.truncations):.2g} % of the forces lie beyond the highest"
+                " harmonic there is room for, as stops and friction make them; its peaks are no better than that."
+            )
         if any(ending not in _ENDED_WELL for ending in track.endings):
             where = ", ".join(f"{track.frequency[i]:.6g}" for i in (0, -1))
             doubtful.append(f"Branch {number} could not be followed to its end; it stops near {where} rad/s.")

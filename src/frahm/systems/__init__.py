@@ -10,13 +10,12 @@ from frahm.systems.parameters import (
     with_parameters,
 )
 from frahm.systems.pipe import as_system, build_system, stress_row, stress_rows
-from frahm.systems.system import Element, Law, System
+from frahm.systems.system import Element, System
 
 __all__ = [
     "PARAMETERS",
     "Derivative",
     "Element",
-    "Law",
     "System",
     "as_system",
     "build_system",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frahm.absorbers import Polynomial
+from frahm.absorbers import Law
 from frahm.arrays import Floats
 from frahm.errors import ParameterError, check_number, nearest
 from frahm.systems.system import Element, System
@@ -22,20 +22,21 @@ PARAMETERS = {
 
 @dataclass(frozen=True)
 class Derivative:
-    """Derivatives of a system by a parameter: matrices, forcing, and the factor rate of the first element's spring."""
+    """Derivatives of a system by a parameter: matrices, forcing, and the nonlinear part of the first element's law."""
 
     mass: Floats
     damping: Floats
     stiffness: Floats
     forcing: Floats
-    spring: float  # d/dp of the nonlinear spring's coefficients, relative to their values
+    law: Law | None
 
 
 def check_parameter(system: System, name: str) -> str:
     """Return the name of a parameter that the system has.
 
     "kappa" [1/(m^2 s^2)], "xi2" [1/s] and "rho2" [-] are cubic stiffness, damping and mass of the first element's
-    absorber per host mass (M[0, 0]), "force" is a factor on the forcing and "pipe_frequency" [rad/s] moves the
+    absorber per host mass (M[0, 0]); the cubic stiffness scales the nonlinear spring and leaves its linear part, stops,
+    friction and weight. "force" is a factor on the forcing and "pipe_frequency" [rad/s] moves the
     reference frequency with K as its square and C in proportion.
     """
     if name not in PARAMETERS:
@@ -79,11 +80,9 @@ def with_parameters(system: System, **values: float) -> System:
             a = _absorber(system)
             M[a, a] = value * M[0, 0]
         else:
-            law = elements[0].law
-            scale = value / parameter_value(system, "kappa") if name == "kappa" else 1.0
-            coefficients = np.append(law.coefficients[:1], law.coefficients[1:] * scale)
-            damping = value * M[0, 0] if name == "xi2" else law.damping
-            elements[0] = Element(elements[0].direction, Polynomial(coefficients, damping))
+            law, amount = elements[0].law, value * M[0, 0]
+            law = law.with_cubic_stiffness(amount) if name == "kappa" else law.with_damping(amount)
+            elements[0] = Element(elements[0].direction, law)
     reference = values.get("pipe_frequency", reference)
     return System(M, C, K, f, elements, system.output, reference, system.name)
 
@@ -92,25 +91,24 @@ def derivative_of(system: System, original: System, name: str) -> Derivative:
     """Derivatives by one parameter at the system that `with_parameters` made from `original`."""
     n = system.size
     zero = np.zeros((n, n))
-    none = Derivative(zero, zero, zero, np.zeros(n), 0.0)
+    none = np.zeros(n)
     if name == "force":
-        return Derivative(zero, zero, zero, np.array(original.forcing), 0.0)
+        return Derivative(zero, zero, zero, np.array(original.forcing), None)
     if name == "kappa":
-        return Derivative(zero, zero, zero, none.forcing, 1.0 / parameter_value(system, "kappa"))
+        return Derivative(zero, zero, zero, none, system.elements[0].law.by_cubic_stiffness(system.mass[0, 0]))
     if name == "xi2":
         direction = system.elements[0].direction
-        return Derivative(zero, system.mass[0, 0] * np.outer(direction, direction), zero, none.forcing, 0.0)
+        return Derivative(zero, system.mass[0, 0] * np.outer(direction, direction), zero, none, None)
     if name == "rho2":
         mass = zero.copy()
         mass[_absorber(system), _absorber(system)] = system.mass[0, 0]
-        return Derivative(mass, zero, zero, none.forcing, 0.0)
+        return Derivative(mass, zero, zero, none, None)
     omega = system.reference_frequency
-    return Derivative(zero, system.damping / omega, 2 * system.stiffness / omega, none.forcing, 0.0)
+    return Derivative(zero, system.damping / omega, 2 * system.stiffness / omega, none, None)
 
 
 def _cubic(system: System) -> float:
-    c = system.elements[0].law.coefficients
-    return float(c[2]) if c.size >= 3 else 0.0
+    return system.elements[0].law.cubic_stiffness
 
 
 def _absorber(system: System) -> int:

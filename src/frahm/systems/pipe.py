@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
-from frahm.absorbers import Cubic, Linear, Polynomial
+from frahm.absorbers import Bistable, Cubic, Friction, Law, Linear, Polynomial, Stops, TransverseSprings
 from frahm.arrays import Floats
-from frahm.case import Absorber, Case, CubicLaw, LinearLaw, load_case
+from frahm.case import Absorber, Case, load_case
 from frahm.errors import ParameterError
 from frahm.loads import vortex_shedding
-from frahm.systems.system import Element, Law, System
+from frahm.systems.system import Element, System
+
+_LAWS: dict[str, Callable[..., Law]] = {
+    "cubic": Cubic, "linear": Linear, "polynomial": Polynomial, "bistable": Bistable,
+    "transverse-springs": TransverseSprings,
+}  # fmt: skip
 
 
 def build_system(case: Case | str | os.PathLike[str] | Mapping[str, Any]) -> System:
@@ -120,9 +125,8 @@ def _relative(motion: Floats, absorber: int, count: int) -> Floats:
 
 
 def _force_law(absorber: Absorber) -> Law:
-    law = absorber.law
-    if isinstance(law, CubicLaw):
-        return Cubic(stiffness=law.stiffness, damping=law.damping)
-    if isinstance(law, LinearLaw):
-        return Linear(stiffness=law.stiffness, damping=law.damping)
-    return Polynomial(law.coefficients, damping=law.damping)
+    law, weight = absorber.law, absorber.mass * absorber.gravity
+    stops = None if absorber.stops is None else Stops(**dict(absorber.stops))
+    friction = None if absorber.friction is None else Friction(**dict(absorber.friction))
+    given = {name: value for name, value in law if name != "kind"}
+    return _LAWS[law.kind](**given, stops=stops, friction=friction, weight=weight)

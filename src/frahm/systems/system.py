@@ -11,11 +11,9 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike
 
-from frahm.absorbers import Polynomial
+from frahm.absorbers import Law
 from frahm.arrays import Floats, finite_array, frozen
 from frahm.errors import ParameterError, check_number
-
-Law = Polynomial
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -26,7 +24,7 @@ class Element:
     ----------
     direction : array_like, shape (n,)
         n [-]; for a sink between coordinates 0 and 1 it is (-1, 1), so that z = x2 - x1.
-    law : Polynomial
+    law : Law
         Force law g(z, w) [N].
     """
 
@@ -37,7 +35,7 @@ class Element:
         n = finite_array("direction", direction, (-1,))
         if not np.any(n):
             raise ParameterError("direction", direction, "a vector that is not zero")
-        if not isinstance(law, Polynomial):
+        if not isinstance(law, Law):
             raise ParameterError("law", law, "a force law such as frahm.Cubic(stiffness=..., damping=...)")
         object.__setattr__(self, "direction", n)
         object.__setattr__(self, "law", law)

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
 
-from frahm.absorbers.packed import pack_laws
+from frahm.absorbers.packed import POLYNOMIAL, pack_laws
 from frahm.arrays import Floats
 from frahm.errors import ParameterError
 from frahm.lanes import LANES, address
@@ -26,6 +26,20 @@ class Structure(NamedTuple):
     per row r from start[r] to start[r + 1], those of `reach` and `input` per element likewise. `laws` are the codes of
     `frahm.absorbers.packed`.
     """
+
+    size: int
+    elements: int
+    linear_start: int
+    linear_column: int
+    reach_start: int
+    reach_column: int
+    input_start: int
+    input_row: int
+    laws: int
+
+
+class GeneralStructure(NamedTuple):
+    """A `Structure` with laws that are no bare polynomials: a type of its own, so that polynomials pay nothing."""
 
     size: int
     elements: int
@@ -57,7 +71,7 @@ class Numbers(NamedTuple):
 class PackedSystems:
     """Systems as tables: `structure` holds addresses into `lists`, which must live as long as it is used."""
 
-    structure: Structure
+    structure: Structure | GeneralStructure
     tables: Numbers
     lists: tuple[Integers, ...]
 
@@ -100,7 +114,8 @@ def pack_systems(systems: Sequence[System]) -> PackedSystems:
             _starts(input_element, elements), LANES * input_row, packed[0][0],
         )
     )  # fmt: skip
-    structure = Structure(n, elements, *(address(values) for values in lists))
+    kind = GeneralStructure if np.any(packed[0][0][:, 0] != POLYNOMIAL) else Structure
+    structure = kind(n, elements, *(address(values) for values in lists))
     tables = Numbers(
         linear_values, reach_values, input_values, _columns(np.array([table for _, table in packed])),
         _columns(forcing), _columns(monitor.reshape(count, 2 * n)),

@@ -7,15 +7,33 @@ each, `h` is the step in seconds and `turns` the step in periods of the forcing.
 
 from __future__ import annotations
 
-from frahm.absorbers.packed import law_force
+from typing import Any
+
+from numba.core import types
+from numba.extending import overload
+
+from frahm.absorbers.packed import law_force, polynomial_force
 from frahm.compiled import kernel
 from frahm.lanes import LANES, cos_turns, integer, load, magnitude, maximum, spread, square_root, store
 from frahm.time_integration import coefficients as c
+from frahm.time_integration.packed_system import GeneralStructure
 
 _C = (
     0.0, 0.0, c.C2, c.C3, c.C4, c.C5, c.C6, c.C7, c.C8, c.C9, c.C10, c.C11, c.C12, c.C13, c.C14, c.C15, c.C16,
 )  # fmt: skip
 _TINY = 1e-140  # its square must not underflow: no motion, no error
+
+
+def _element_force(structure: Any, kind: int, start: int, count: int, table: Any, z: Any, w: Any) -> Any:
+    """Force of an element; which laws there are is known when the code is compiled."""
+    raise NotImplementedError
+
+
+@overload(_element_force)
+def _compiled_element_force(structure, kind, start, count, table, z, w):
+    if isinstance(structure, types.BaseNamedTuple) and structure.instance_class is GeneralStructure:
+        return lambda structure, kind, start, count, table, z, w: law_force(kind, start, count, table, z, w)
+    return lambda structure, kind, start, count, table, z, w: polynomial_force(start, count, table, z, w)
 
 
 @kernel
@@ -40,7 +58,7 @@ def derivative(structure, numbers, turns, y, k):
             integer(structure.laws, 3 * element), integer(structure.laws, 3 * element + 1),
             integer(structure.laws, 3 * element + 2),
         )  # fmt: skip
-        force = law_force(kind, start, count, numbers.law, z, w)
+        force = _element_force(structure, kind, start, count, numbers.law, z, w)
         for e in range(integer(structure.input_start, element), integer(structure.input_start, element + 1)):
             into = half + integer(structure.input_row, e)
             store(k, into, load(k, into) + load(numbers.input, e * LANES) * force)

@@ -6,7 +6,7 @@ import pytest
 import frahm
 from frahm.harmonic_balance import begin, find_branches
 from frahm.harmonic_balance.condensation import condense
-from frahm.harmonic_balance.seeds import amplitude_roots, single_element_seeds, spring_polynomial
+from frahm.harmonic_balance.seeds import amplitude_roots, seeder_for, spring_polynomial
 
 
 def sink(coefficients=(0, 0, 0.01), damping=0.05):
@@ -49,9 +49,9 @@ def test_starts_of_a_law_with_even_powers_balance_its_mean_force():
     coefficients = (0.2, 0.3, 0.1)
     problem = condense(sink(coefficients))
     tau = np.linspace(0, 2 * np.pi, 64, endpoint=False)
-    seeds = single_element_seeds(problem, 0.9, spring_polynomial(problem))
+    seeds = seeder_for(problem, np.array([0.8, 0.9, 1.0])).at(0.9, 1.0)
     assert seeds
     for seed in seeds:
         z = seed.harmonics[0][0].real + abs(seed.harmonics[1][0]) * np.cos(tau)
         force = frahm.Polynomial(coefficients).force(z)
-        assert abs(np.mean(force)) < 1e-9 * np.max(np.abs(force))
+        assert abs(np.mean(force)) < 1e-3 * np.max(np.abs(force))

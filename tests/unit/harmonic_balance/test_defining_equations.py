@@ -20,9 +20,22 @@ AXES = [
 ]
 
 
-@pytest.fixture(scope="module")
-def found():
+def sliding_pipe():
+    """The jacket pipe with transverse springs, stops and friction instead of the cubic spring."""
+    plain = frahm.build_system(frahm.load_case("jacket-pipe").with_absorber(kappa=367.38, xi2=0.0085))
+    law = frahm.TransverseSprings(
+        247 * 367.38 * 0.09, 0.3, 247 * 0.008, pretension=0.1, stops=frahm.Stops(0.04, 300.0, 0.04),
+        friction=frahm.Friction(0.02, 0.05),
+    )  # fmt: skip
+    element = frahm.Element(plain.elements[0].direction, law)
+    return frahm.System(plain.mass, plain.damping, plain.stiffness, plain.forcing, [element])
+
+
+@pytest.fixture(scope="module", params=["cubic", "sliding"])
+def found(request):
     system = frahm.build_system(frahm.load_case("jacket-pipe").with_absorber(kappa=367.38, xi2=0.0085))
+    if request.param == "sliding":
+        system = sliding_pipe()
     omega = system.reference_frequency
     search = begin(system, omega - 0.2, omega + 0.2, None)
     return system, search, find_branches(search)

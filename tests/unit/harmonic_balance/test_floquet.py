@@ -11,7 +11,8 @@ from frahm.harmonic_balance.hill import refine_exponents
 from frahm.harmonic_balance.kernels import harmonic_count, harmonics_of
 from frahm.harmonic_balance.orbits import peak_of
 
-CASES = [(seed, laws, odd) for seed in range(3) for laws, odd in (("odd", True), ("any", False))]
+KINDS = (("odd", True), ("any", False), ("sliding", True), ("heavy", False))
+CASES = [(seed, laws, odd) for seed in range(3) for laws, odd in KINDS]
 
 
 def some_orbit(problem, H, odd, seed):
@@ -26,14 +27,15 @@ def some_orbit(problem, H, odd, seed):
 
 
 def fundamental_matrix(system, problem, u, W, span):
-    """By scipy: M dx'' + (C + sum d n n^T) dx' + (K + sum g'(z) n n^T) dx = 0, states (x, v)."""
+    """By scipy: M dx'' + (C + sum dg/dw n n^T) dx' + (K + sum dg/dz n n^T) dx = 0, states (x, v)."""
     n, M = system.size, np.linalg.inv(system.mass)
     N = np.column_stack([element.direction for element in system.elements])
-    C = system.damping + sum(e.law.damping * np.outer(e.direction, e.direction) for e in system.elements)
     ks = np.arange(len(u))
 
     def rate(t, y):
-        z = problem.directions.T @ (u * np.exp(1j * ks * W * t)[:, None]).sum(axis=0).real
+        waves = u * np.exp(1j * ks * W * t)[:, None]
+        z, w = (problem.directions.T @ part.sum(axis=0).real for part in (waves, 1j * ks[:, None] * W * waves))
+        C = system.damping + (N * [float(e.law.damping_at(w[i])) for i, e in enumerate(system.elements)]) @ N.T
         p = [float(e.law.stiffness(z[i])) for i, e in enumerate(system.elements)]
         K = system.stiffness + (N * p) @ N.T
         x, v = y.reshape(2, n, -1)

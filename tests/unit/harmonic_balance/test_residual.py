@@ -16,7 +16,14 @@ from frahm.harmonic_balance.kernels import (
 CASES = [
     (seed, laws, odd, dependent)
     for seed in range(3)
-    for laws, odd in (("cubic", True), ("odd", True), ("cubic", False), ("any", False))
+    for laws, odd in (
+        ("cubic", True),
+        ("odd", True),
+        ("cubic", False),
+        ("any", False),
+        ("sliding", True),
+        ("heavy", False),
+    )
     for dependent in (False, True)
 ]
 
@@ -66,7 +73,7 @@ def test_element_force_is_free_of_aliasing(make_system, laws, odd):
     harmonics_of(problem, H, odd, point(problem, H, odd, 3), u)
     tables = fourier_tables(H, odd, sample_count(problem, H, odd))
     G, slope = np.zeros(H + 5, complex), np.zeros(2 * H + 1, complex)
-    element_force(problem, 0, H, odd, u, *tables, G, slope)
+    element_force(problem, 0, H, odd, 1.0, u, *tables, G, slope, np.zeros_like(slope))
     half = problem.directions[0, 0] * u[: H + 1, 0] / 2
     z = np.concatenate([half[:0:-1].conj(), [2 * half[0].real], half[1:]])
     law = system.elements[0].law.coefficients
