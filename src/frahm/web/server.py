@@ -23,6 +23,7 @@ class _Quiet(WSGIRequestHandler):
     """Keeps connections open between requests, and says nothing about them."""
 
     protocol_version = "HTTP/1.1"
+    disable_nagle_algorithm = True  # head and body are sent one after the other: neither may wait for the other
 
     def log_request(self, *arguments: Any) -> None:
         """Say nothing."""

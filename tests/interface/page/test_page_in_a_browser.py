@@ -5,10 +5,11 @@ import re
 
 import numpy as np
 import pytest
-from browsing import Visitor, axe_faults, start, wait_until
+from browsing import PATIENCE, Visitor, axe_faults, start, wait_until
 from playwright.sync_api import expect
 
 import frahm
+from frahm.analysis import analyse
 
 CASE = frahm.load_case("jacket-pipe")
 CHANGES = {
@@ -385,3 +386,30 @@ def test_a_server_that_has_ended_is_reported_and_leaves_no_process(context):
             return False
 
     assert wait_until(lambda: not any(alive(pid) for pid in workers))
+
+
+def test_the_way_of_a_newcomer(visit, tmp_path):
+    """Change a slider, save the case, get the report of the page, run the same case: the numbers are the same."""
+    quick = CASE.with_absorber(kappa=5.0, xi2=0.1).with_analysis(samples=2, periods=100, detuning=(-0.02, 0.02))
+    quick.with_name("quick").to_yaml(tmp_path / "quick.yaml")
+    visitor = visit()
+    visitor.page.locator("#load input[type=file]").set_input_files(tmp_path / "quick.yaml")
+    expect(visitor.page.locator("#case-name")).to_contain_text("quick")
+    visitor.slider("kappa").focus()
+    visitor.page.keyboard.press("ArrowRight")
+    expect(visitor.field("kappa")).not_to_have_value("5")
+    with visitor.page.expect_download() as saved:
+        visitor.page.locator("#save").click()
+    saved.value.save_as(tmp_path / "mine.yaml")
+    mine = frahm.load_case(tmp_path / "mine.yaml")
+    assert mine.absorbers[0].normalised(mine.pipe.mass)["kappa"] == pytest.approx(
+        float(visitor.field("kappa").input_value()), rel=1e-12
+    )
+    with visitor.page.expect_download(timeout=PATIENCE) as saved:
+        visitor.page.locator("#report").click()
+        expect(visitor.page.locator("#progress")).to_contain_text(re.compile(r"report: .*\(\d+ of \d+\)"))
+    text = saved.value.path().read_text(encoding="utf-8")
+    assert "<html" in text
+    assert mine.digest in text
+    verdict = visitor.text("job-status").removeprefix("The report was saved by the browser. ")
+    assert verdict == analyse(mine).verdict
