@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 
-.PHONY: setup run reproduce test lint types bench docs clean
+.PHONY: setup run reproduce test lint types bench docs scatter-study clean
 
 setup: $(STAMP)
 
@@ -37,6 +37,9 @@ bench: setup
 docs: setup
 	$(BIN)/sphinx-build -W --keep-going -q -b html docs docs/_build/html
 	@echo "docs/_build/html/index.html"
+
+scatter-study: setup
+	$(BIN)/python examples/scatter_study.py
 
 clean:
 	rm -rf $(VENV) out docs/_build .mypy_cache .pytest_cache .ruff_cache .import_linter_cache

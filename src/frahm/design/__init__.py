@@ -1,7 +1,7 @@
 """Room `design`: the best absorber, verified over all attractors and compared with its rivals."""
 
 from frahm.design.absorber import DesignedAbsorber, with_design
-from frahm.design.designing import design_absorber
+from frahm.design.designing import design_absorber, verified_designs
 from frahm.design.settings import DesignSettings
 from frahm.design.store import save_design
 from frahm.design.study import DesignStudy, Rival
@@ -13,5 +13,6 @@ __all__ = [
     "Rival",
     "design_absorber",
     "save_design",
+    "verified_designs",
     "with_design",
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +11,12 @@ import numpy as np
 
 from frahm import __version__
 from frahm.case import Case, load_case
-from frahm.design.absorber import DesignedAbsorber, absorber_of, with_design
+from frahm.design.absorber import FAMILIES, DesignedAbsorber, absorber_of, with_design
 from frahm.design.exact import Windows, exact_birth
 from frahm.design.finalists import Finalist, finalists
+from frahm.design.hardware import Hardware, as_built, hardware
 from frahm.design.host import Host, host_of
+from frahm.design.robustness import Sensitivity, ToleranceBand, sensitivities, tolerance_band
 from frahm.design.screening import Screening
 from frahm.design.search import Limits, TierOne
 from frahm.design.settings import DesignSettings
@@ -37,6 +39,7 @@ _STEP = (
 )
 _MOST_FINALISTS = 4
 _JUMP = 1.1  # a design whose peak grows by more than this beside the force has met a detached curve
+_MARGIN_SAMPLES = 40
 _TABLE_SAMPLES, _TABLE_PERIODS = 8, 1000
 _DEVICES = {"sink": "sink", "tuned": "tuned mass damper", "mixed": "mixed"}
 
@@ -51,6 +54,10 @@ class _Found:
     sure: dict[str, tuple[bool, ...]] = field(default_factory=dict)
     trade_off: list[MarginPoint] = field(default_factory=list)
     with_margin: Verification | None = None
+    hardware: Hardware | None = None
+    tolerance: ToleranceBand | None = None
+    sensitivities: tuple[Sensitivity, ...] = ()
+    built: Verification | None = None
     screened: int = 0
     discarded: list[str] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
@@ -104,6 +111,24 @@ def design_absorber(
     return work.study(interrupted)
 
 
+def verified_designs(
+    case: Case | str | os.PathLike[str] | Mapping[str, Any],
+    settings: DesignSettings,
+    families: Sequence[str] = FAMILIES,
+    progress: Progress | None = None,
+) -> tuple[Rival, ...]:
+    """Best verified design of every family under the settings, without the comparison of `design_absorber`.
+
+    A family of which no design keeps the limits is left out.
+    """
+    work = _Designing(load_case(case), settings, progress)
+    for family in families:
+        rival = work.designed(family)
+        if rival is not None:
+            work.found.rivals[rival.name] = rival
+    return tuple(work.found.rivals.values())
+
+
 def _settings(
     case: Case, mass_ratio: float | None, settings: DesignSettings | None, changes: dict[str, Any]
 ) -> DesignSettings:
@@ -149,9 +174,9 @@ class _Designing:
 
     def run(self) -> None:
         families = [self.settings.family, *(f for f in ("sink", "tuned", "mixed") if f != self.settings.family)]
-        self.total = len(families) + 2 + len(self.settings.margins) + 5
+        self.total = len(families) + 3 + len(self.settings.margins) + 5
         for family in families:
-            rival = self._designed(family)
+            rival = self.designed(family)
             if family == self.settings.family:
                 if rival is None:
                     hint = f"No design keeps them; what binds: {self._binding(family)}."
@@ -160,6 +185,7 @@ class _Designing:
             if rival is not None:
                 self.found.rivals[rival.name] = rival
         self._others()
+        self._made()
         self._error_table()
         self._trade_off()
 
@@ -197,7 +223,7 @@ class _Designing:
         self.found.discarded += [f"{_DEVICES[family]}: {reason}" for reason in discarded]
         return kept
 
-    def _designed(self, family: str) -> Rival | None:
+    def designed(self, family: str) -> Rival | None:
         """Best verified design of a family: finalists in the order of what is expected of them."""
         self._step(f"search: {_DEVICES[family]}")
         waiting = self._finalists(family, self.limits)
@@ -237,7 +263,9 @@ class _Designing:
         """Worst case with the margin on the force; None where there is none, or no nonlinear spring."""
         if rival.design is None or not rival.design.kappa or self.settings.force_margin == 1:
             return None
-        return self._verify(system, force=self.settings.force_margin)
+        return self._verify(
+            system, force=self.settings.force_margin, samples=min(_MARGIN_SAMPLES, self.settings.samples)
+        )
 
     def _discard(self, rival: Rival, why: str) -> None:
         d = rival.design
@@ -247,10 +275,9 @@ class _Designing:
                 f" {rival.worst_pipe_peak:.4g} m over all attractors; {why}."
             )
 
-    def _verify(self, system: System, *, force: float = 1.0) -> Verification:
-        return verification(
-            system, self.windows, self.errors, samples=self.settings.samples, seed=self.settings.seed, force=force
-        )
+    def _verify(self, system: System, *, force: float = 1.0, samples: int | None = None) -> Verification:
+        count = self.settings.samples if samples is None else samples
+        return verification(system, self.windows, self.errors, samples=count, seed=self.settings.seed, force=force)
 
     def _others(self) -> None:
         """The pipe without absorber, and the case's own."""
@@ -263,6 +290,25 @@ class _Designing:
             checked = self._verify(system)
             free, _ = exact_birth(system, self.windows, self.errors, 1.0, 1.1 * self.settings.force_margin)
             self.found.rivals["case"] = _rival("case", absorber_of(self.case), checked, free)
+
+    def _made(self) -> None:
+        """The chosen design as hardware, with its tolerances and slopes, and with the force the springs really have."""
+        best, more = self.found.best, self.found.with_margin
+        if best is None or best.design is None:
+            return
+        self._step("hardware, tolerances and sensitivities")
+        design, found = best.design, self.found
+        stroke = max(best.relative_peak, more.relative_peak if more else 0.0)
+        found.hardware = hardware(self.case, design, stroke, best.frequency)
+        found.tolerance = tolerance_band(
+            design, best.worst_pipe_peak, self.system_of, self.windows, self.errors, self.settings.seed
+        )
+        found.sensitivities = sensitivities(
+            design, self.system_of, self.windows, self.errors, self._tier(self.settings.family).screening,
+            self.case.pipe.mass,
+        )  # fmt: skip
+        if design.kappa:
+            found.built = self._verify(build_system(as_built(self.case, design, stroke)))
 
     def _error_table(self) -> None:
         """Every device at every frequency error, not retuned."""
@@ -310,6 +356,8 @@ class _Designing:
         doubts = [f"{rival.name}: {sentence}" for rival in rivals for sentence in rival.unverified]
         if found.with_margin is not None:
             doubts += [f"With the margin on the force: {sentence}" for sentence in found.with_margin.unverified]
+        if found.built is not None:
+            doubts += [f"With the exact force of transverse springs: {sentence}" for sentence in found.built.unverified]
         if interrupted:
             doubts.append("Interrupted: the comparison is not complete.")
         name = f"{self.case.name}-{best.name.replace(' ', '-')}"[:60]
@@ -324,6 +372,10 @@ class _Designing:
             error_verified=found.sure,
             trade_off=tuple(found.trade_off),
             with_margin=found.with_margin.pipe_peak if found.with_margin else math.nan,
+            hardware=found.hardware,
+            tolerance=found.tolerance,
+            sensitivities=found.sensitivities,
+            as_built=found.built.pipe_peak if found.built else math.nan,
             screened=found.screened,
             discarded=tuple(dict.fromkeys(found.discarded)),
             verdict=verdict(rivals, self.settings.errors, found.table, self.settings.scatter),

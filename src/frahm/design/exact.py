@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,6 +50,8 @@ class ExactJudgement:
         Largest growth rate of a disturbance [1/s], saddles of multivalued responses left out.
     detached : bool
         Whether there is a detached curve.
+    peaks : tuple of float
+        Largest pipe peak at every frequency error [m].
     unverified : tuple of str
     """
 
@@ -59,6 +61,7 @@ class ExactJudgement:
     frequency: float
     growth_rate: float
     detached: bool
+    peaks: tuple[float, ...]
     unverified: tuple[str, ...]
 
     @property
@@ -78,19 +81,21 @@ def exact_judgement(system: System, windows: Windows, errors: Sequence[float], f
     """All periodic responses of a design under all frequency errors."""
     worst, stroke, at, growth, detached = -1.0, 0.0, (1.0, math.nan), -math.inf, False
     doubts: list[str] = []
+    peaks: list[float] = []
     for error in errors:
         window, wide = windows.at(error)
         curve = frequency_response(disturbed(system, error, force), frequency=wide)
         inside = (curve.frequency >= window[0]) & (curve.frequency <= window[1])
         peak = np.where(inside, curve.pipe_peak, -1.0)
         index = int(np.argmax(peak))
+        peaks.append(float(peak[index]))
         if peak[index] > worst:
             worst, at = float(peak[index]), (float(error), float(curve.frequency[index]))
         stroke = max(stroke, float(np.max(np.where(inside, curve.relative_peak, 0.0))))
         growth = max(growth, _growth(curve, inside))
         detached = detached or has_detached(curve)
         doubts += curve.unverified
-    return ExactJudgement(worst, stroke, *at, growth, detached, tuple(dict.fromkeys(doubts)))
+    return ExactJudgement(worst, stroke, *at, growth, detached, tuple(peaks), tuple(dict.fromkeys(doubts)))
 
 
 def has_detached(curve: ResponseCurve) -> bool:
@@ -104,15 +109,24 @@ def exact_birth(
     """Largest factor on the force known to be without, and least known to be with a detached curve, around a guess.
 
     Bisected to a thousandth; (most, inf) if none is met up to `most`. Starts from the guess, so that a detached curve
-    that ends again at more force is not stepped over if the guess is near its birth.
+    that ends again at more force is not stepped over if the guess is near its birth. The first error is the one
+    expected to be critical; the others are asked at the end.
     """
 
-    def detached(force: float) -> bool:
-        return any(
-            has_detached(frequency_response(disturbed(system, error, force), frequency=windows.at(error)[1]))
-            for error in errors
-        )
+    def detached(error: float, force: float) -> bool:
+        return has_detached(frequency_response(disturbed(system, error, force), frequency=windows.at(error)[1]))
 
+    critical = errors[0]
+    for _ in range(len(errors)):
+        free, taken = _bisected(lambda force, error=critical: detached(error, force), guess, most)  # type: ignore[misc]
+        other = next((error for error in errors if error != critical and detached(error, free)), None)
+        if other is None or free == 0.0:
+            break
+        critical, guess = other, free
+    return free, taken
+
+
+def _bisected(detached: Callable[[float], bool], guess: float, most: float) -> tuple[float, float]:
     step, free, taken = 0.02, math.nan, math.nan
     force = min(max(guess, 0.5), most)
     for _ in range(_STEPS):

@@ -17,7 +17,7 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.design.absorber import DesignedAbsorber
 from frahm.design.exact import ExactJudgement, Windows, exact_birth, exact_judgement
-from frahm.design.search import Corrections, Limits, TierOne, predicted_peaks
+from frahm.design.search import BIRTH, CEILING, GROWTH, PEAKS, STROKE, Corrections, Limits, TierOne, predicted_peaks
 from frahm.systems import System
 
 _ROUNDS = 6
@@ -25,6 +25,7 @@ _SETTLED = 1e-3  # relative change of the exact peak that ends the rounds
 _SHORT = 1.5e-3  # by which an exact birth may fall short of the margin while the rounds go on
 _LEAST_DECAY = 4.5e-3  # per period: slower motions do not settle within the periods of the attractor search
 _MISSED = 2e-3  # of the force: a detached curve so near its birth may be too small to be met
+_TRUSTED = (0.95, 1.1)  # ratios of exact to screened peaks beyond these tell of a jump, not of a trend
 _FAR = 1.1  # of the margin: how far a birth is looked for
 
 
@@ -106,10 +107,12 @@ def _judged(
     exact = exact_judgement(system, windows, errors)
     free, taken = math.inf, math.inf
     if row[2]:
-        guess = judged[0, 3] * corrections.birth
+        guess = judged[0, BIRTH] * corrections.birth
         most = _FAR * limits.force_margin
-        free, taken = exact_birth(system, windows, errors, guess if math.isfinite(guess) else most, most)
-    as_exact = np.array([[exact.pipe_peak, 0.0, exact.growth_rate, math.inf, judged[0, 4]]])
+        order = np.argsort(tier.screening.births_by_error(row), kind="stable")
+        critical_first = [errors[i] for i in order]
+        free, taken = exact_birth(system, windows, critical_first, guess if math.isfinite(guess) else most, most)
+    as_exact = np.array([[0.0, exact.growth_rate, math.inf, judged[0, CEILING], exact.pipe_peak]])
     predicted = float(predicted_peaks(as_exact, Limits(1.0, math.inf, False), Corrections())[0])
     known = free if math.isinf(taken) else free - _MISSED
     return Finalist(design, predicted, exact, known, math.isinf(taken)), 0.5 * (free + taken)
@@ -118,12 +121,12 @@ def _judged(
 def _corrected(old: Corrections, judged: Floats, finalist: Finalist, birth: float, decay: float) -> Corrections:
     """Corrections that make the closed form agree with the exact equations at this design."""
     exact = finalist.exact
-    known = math.isfinite(judged[3]) and not finalist.open_ended
-    offset = exact.growth_rate - judged[2]
+    known = math.isfinite(judged[BIRTH]) and not finalist.open_ended
+    offset = exact.growth_rate - judged[GROWTH]
     return Corrections(
-        peak=exact.pipe_peak / judged[0],
-        stroke=exact.relative_peak / judged[1],
-        birth=(birth - 1.5 * _MISSED) / judged[3] if known else old.birth,
+        peaks=np.clip(np.array(exact.peaks) / judged[PEAKS:], *_TRUSTED),
+        stroke=exact.relative_peak / judged[STROKE],
+        birth=(birth - 1.5 * _MISSED) / judged[BIRTH] if known else old.birth,
         damping=decay + offset if math.isfinite(decay) and math.isfinite(offset) else old.damping,
     )
 

@@ -148,20 +148,21 @@ def largest_responses(frequency, a, u, b, x, designs, limit, worst):
 
 
 @kernel
-def screened(frequency, a, u, b, x, mode, designs, found):
-    """Fill `found` (D, 3) for `designs` (D, 4): m [kg], k1 [N/m], k3 [N/m^3], c [N s/m].
+def screened(frequency, a, u, b, x, mode, designs, found, peaks):
+    """Fill `peaks` (D, R) and `found` (D, 2) for `designs` (D, 4): m [kg], k1 [N/m], k3 [N/m^3], c [N s/m].
 
-    Columns: largest |x| [m] over all roots and conditions; largest |Z| [m]; largest growth rate [1/s] of the governing
-    mode's slow flow, saddles left out. `mode` (R, 3) holds frequency, damping over mass and mass of the governing mode
-    at every frequency error.
+    `peaks` is the largest |x| [m] over all roots and frequencies at every frequency error; the columns of `found` are
+    the largest |Z| [m] and the largest growth rate [1/s] of the governing mode's slow flow, saddles left out. `mode`
+    (R, 3) holds frequency, damping over mass and mass of the governing mode at every frequency error.
     """
     R, W = frequency.shape
     for i in range(designs.shape[0]):
         m, k1, k3, damper = designs[i]
-        square, largest, growth = 0.0, 0.0, -math.inf
+        largest, growth = 0.0, -math.inf
         k = 0.75 * k3
         for r in range(R):
             omega, xi1, mass = mode[r]
+            square = 0.0
             for j in range(W):
                 G, d0, s0, drive = _balance(frequency[r, j], a[r, j], u[r, j], m, k1, damper)
                 count, N1, N2, N3 = _squares(k, d0, s0, drive)
@@ -177,4 +178,5 @@ def screened(frequency, a, u, b, x, mode, designs, found):
                     c1, c2, c3, c4 = characteristic(d2, d1, e0, s1, t0, n / mass)
                     if stability_class(c1, c2, c3, c4) != ODD:
                         growth = max(growth, growth_rate(c1, c2, c3, c4))
-        found[i, 0], found[i, 1], found[i, 2] = math.sqrt(square), math.sqrt(largest), growth
+            peaks[i, r] = math.sqrt(square)
+        found[i, 0], found[i, 1] = math.sqrt(largest), growth

@@ -61,18 +61,27 @@ class Screening:
         self._in_threads(run, len(designs))
         return found
 
-    def responses(self, designs: Floats) -> Floats:
-        """Amplitude of the pipe [m], of the absorber [m], growth rate [1/s]: the largest of each, shape (D, 3)."""
-        found = np.empty((len(designs), 3))
+    def births_by_error(self, design: Floats) -> Floats:
+        """Least factor on the force [-] at which one design (4,) has a detached curve, for every frequency error."""
+        found = np.empty((len(self.wide.errors), 1))
+        for row, into in enumerate(found):
+            part = slice(row, row + 1)
+            births(self.wide.frequency[part], self.wide.a[part], self.wide.u[part], design[None], into)
+        return found[:, 0]
+
+    def responses(self, designs: Floats) -> tuple[Floats, Floats]:
+        """Largest pipe amplitude [m] at every frequency error, (D, R); largest |Z| [m] and growth [1/s], (D, 2)."""
+        found = np.empty((len(designs), 2))
+        peaks = np.empty((len(designs), len(self.conditions.errors)))
         c, host = self.conditions, self.host
         mode = np.empty((len(c.errors), 3))
         mode[:, 0], mode[:, 1], mode[:, 2] = host.frequency * c.errors, host.modal_damping * c.errors, host.modal_mass
 
         def run(part: slice) -> None:
-            screened(c.frequency, c.a, c.u, c.b, c.x, mode, designs[part], found[part])
+            screened(c.frequency, c.a, c.u, c.b, c.x, mode, designs[part], found[part], peaks[part])
 
         self._in_threads(run, len(designs))
-        return found
+        return peaks, found
 
     def _in_threads(self, run: Callable[[slice], None], count: int) -> None:
         parts = [slice(at, min(at + _BATCH, count)) for at in range(0, count, _BATCH)]

@@ -12,22 +12,22 @@ from frahm.arrays import Floats
 from frahm.design.screening import Screening, fold_ceilings
 from frahm.design.space import DesignSpace
 
+STROKE, GROWTH, BIRTH, CEILING, PEAKS = 0, 1, 2, 3, 4  # columns of what is judged
 _GRID = {2: (72, 72), 3: (24, 30, 26)}
-_STARTS = 6
+_MEMBERS, _GENERATIONS, _SEED = 36, 80, 1
+_STARTS = 8
 _APART = 0.08  # of the cube: starts are at least so far from one another
-_ROUNDS, _SHRINK = 16, 0.62
-_POINTS = {2: 5, 3: 4}
 _MODULATED = 1.08  # modulated peaks over the larger of the periodic one and the ceiling of the slow manifold
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Corrections:
     """Ratios of exact to screened values, and limits, under which the screening is searched.
 
     Attributes
     ----------
-    peak : float
-        Exact pipe peak over screened amplitude [-].
+    peaks : ndarray, shape (R,), or float
+        Exact pipe peak over screened amplitude at every frequency error [-].
     stroke : float
         Exact stroke over screened amplitude [-].
     birth : float
@@ -36,7 +36,7 @@ class Corrections:
         Least decay rate asked of the screened responses [1/s] where they must be stable; minus infinity where not.
     """
 
-    peak: float = 1.0
+    peaks: Floats | float = 1.0
     stroke: float = 1.0
     birth: float = 1.0
     damping: float = -math.inf
@@ -66,21 +66,35 @@ class TierOne:
         self.grid_judged = self.judge(designs)
 
     def judge(self, designs: Floats) -> Floats:
-        """Amplitude of the pipe [m] and of the absorber [m], growth [1/s], birth factor [-], ceiling [m]: (D, 5)."""
+        """Stroke [m], growth [1/s], birth [-], ceiling [m], then the pipe's amplitudes [m]: (D, 4 + R)."""
         self.count += len(designs)
         screening = self.screening
         births, ceilings = screening.births(designs), fold_ceilings(screening, designs)
-        return np.column_stack([screening.responses(designs), births, ceilings])
+        peaks, others = screening.responses(designs)
+        return np.column_stack([others, births, ceilings, peaks])
 
     def best(self, limits: Limits, corrections: Corrections) -> tuple[Floats, float] | None:
-        """Design (4,) with the least predicted pipe peak [m], and that peak; None if no design keeps the limits."""
+        """Design (4,) with the least predicted pipe peak [m], and that peak; None if no design keeps the limits.
+
+        Differential evolution from the best designs of the grid and the best that lie apart from them.
+        """
+        from scipy.optimize import differential_evolution
+
         values = predicted_peaks(self.grid_judged, limits, corrections)
-        best: tuple[Floats, float] | None = None
-        for start in self._starts(values):
-            unit, value = self._zoomed(start, limits, corrections)
-            if best is None or value < best[1]:
-                best = self.space.designs(unit[None])[0], value
-        return best
+        members = self._members(values)
+        if not len(members):
+            return None
+        worst = 10.0 * float(np.max(values[np.isfinite(values)]))
+
+        def objective(units: Floats) -> Floats:
+            peaks = predicted_peaks(self.judge(self.space.designs(units.T)), limits, corrections)
+            return np.where(np.isfinite(peaks), peaks, worst)
+
+        found = differential_evolution(
+            objective, [(0.0, 1.0)] * self.space.size, init=members, maxiter=_GENERATIONS, vectorized=True,
+            updating="deferred", polish=False, seed=_SEED, tol=1e-6, mutation=(0.4, 0.9), recombination=0.9,
+        )  # fmt: skip
+        return self.space.designs(found.x[None])[0], float(found.fun)
 
     def binding(self, limits: Limits) -> str:
         """Which limit leaves no design: the one without which most designs remain."""
@@ -96,48 +110,42 @@ class TierOne:
         }
         return max(left, key=lambda name: left[name])
 
-    def _starts(self, values: Floats) -> list[Floats]:
-        chosen: list[Floats] = []
-        for index in np.argsort(values, kind="stable"):
-            if not np.isfinite(values[index]) or len(chosen) == _STARTS:
+    def _members(self, values: Floats) -> Floats:
+        """First population: the best designs of the grid, a little off it, and the best that lie apart."""
+        order = [int(i) for i in np.argsort(values, kind="stable") if np.isfinite(values[i])]
+        if not order:
+            return np.empty((0, self.space.size))
+        chosen: list[int] = []
+        for index in order:
+            if len(chosen) == _STARTS:
                 break
-            point = self.grid[index]
-            if all(np.max(np.abs(point - other)) > _APART for other in chosen):
-                chosen.append(point)
-        return chosen
-
-    def _zoomed(self, start: Floats, limits: Limits, corrections: Corrections) -> tuple[Floats, float]:
-        """Grids around the best point so far, ever finer; they do not mind edges and jumps of what they search."""
-        d = self.space.size
-        half = 1.5 / (np.array(_GRID[d]) - 1)
-        offsets = np.array(list(itertools.product(np.linspace(-1, 1, _POINTS[d]), repeat=d)))
-        best, value = start, math.inf
-        for _ in range(_ROUNDS):
-            points = np.clip(np.vstack([best, best + offsets * half]), 0.0, 1.0)
-            values = predicted_peaks(self.judge(self.space.designs(points)), limits, corrections)
-            at = int(np.argmin(values))
-            moved = at > 0 and values[at] < value
-            best, value = points[at], float(values[at])
-            half = half * (0.9 if moved and np.max(np.abs(offsets[at - 1])) == 1 else _SHRINK)
-        return best, value
+            if all(np.max(np.abs(self.grid[index] - self.grid[other])) > _APART for other in chosen):
+                chosen.append(index)
+        chosen += [index for index in order[:_MEMBERS] if index not in chosen][: _MEMBERS - len(chosen)]
+        step = 1.0 / (np.array(_GRID[self.space.size]) - 1)
+        members = self.grid[np.resize(chosen, _MEMBERS)]
+        off = np.random.default_rng(_SEED).uniform(-0.7, 0.7, members.shape) * step
+        off[: len(chosen)] *= 0.3  # where few designs keep the limits, the copies of them must differ
+        off[0] = 0.0
+        return np.asarray(np.clip(members + off, 0.0, 1.0))
 
 
 def _kept(judged: Floats, limits: Limits, corrections: Corrections) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    birth = judged[:, 3] * corrections.birth >= limits.force_margin
-    stroke = judged[:, 1] * corrections.stroke <= limits.stroke
-    stable = judged[:, 2] <= -corrections.damping if limits.stable else np.ones(len(judged), bool)
+    birth = judged[:, BIRTH] * corrections.birth >= limits.force_margin
+    stroke = judged[:, STROKE] * corrections.stroke <= limits.stroke
+    stable = judged[:, GROWTH] <= -corrections.damping if limits.stable else np.ones(len(judged), bool)
     return birth, stroke, stable
 
 
 def predicted_peaks(judged: Floats, limits: Limits, corrections: Corrections) -> Floats:
-    """Predicted worst pipe peak [m] of judged designs (D, 5); infinite where a limit is not kept.
+    """Predicted worst pipe peak [m] of judged designs (D, 4 + R); infinite where a limit is not kept.
 
     Where a response is unstable, the modulated motion that takes its place is expected a little above the larger of
     the periodic response and the ceiling of the slow manifold.
     """
     birth, stroke, stable = _kept(judged, limits, corrections)
-    peak = corrections.peak * judged[:, 0]
-    ceiling = np.where(np.isfinite(judged[:, 4]), judged[:, 4], 0.0)
-    unstable = judged[:, 2] > 0
+    peak = np.max(corrections.peaks * judged[:, PEAKS:], axis=1)
+    ceiling = np.nan_to_num(judged[:, CEILING])
+    unstable = judged[:, GROWTH] > 0
     peak = np.where(unstable, _MODULATED * np.maximum(peak, ceiling), peak)
     return np.where(birth & stroke & stable, peak, np.inf)

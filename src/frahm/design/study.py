@@ -10,6 +10,8 @@ import numpy as np
 
 from frahm.arrays import labelled
 from frahm.design.absorber import DesignedAbsorber
+from frahm.design.hardware import Hardware
+from frahm.design.robustness import Sensitivity, ToleranceBand
 from frahm.design.settings import DesignSettings
 
 if TYPE_CHECKING:
@@ -96,6 +98,13 @@ class DesignStudy:
         Worst peak against force margin.
     with_margin : float
         Worst pipe peak [m] of the best design with `force_margin` times the force; NaN if not searched.
+    hardware : Hardware or None
+        Springs, damper, strokes of the best design.
+    tolerance : ToleranceBand or None
+        Within which errors of its parameters the guarantee holds.
+    sensitivities : tuple of Sensitivity
+    as_built : float
+        Worst pipe peak [m] with the exact force of the transverse springs of the sheet; NaN if there are none.
     screened : int
         Designs judged by the closed form.
     discarded : tuple of str
@@ -116,6 +125,10 @@ class DesignStudy:
     error_verified: dict[str, tuple[bool, ...]]
     trade_off: tuple[MarginPoint, ...]
     with_margin: float
+    hardware: Hardware | None
+    tolerance: ToleranceBand | None
+    sensitivities: tuple[Sensitivity, ...]
+    as_built: float
     screened: int
     discarded: tuple[str, ...]
     verdict: str
@@ -146,6 +159,11 @@ class DesignStudy:
                  "verified": p.verified, "tier": p.tier}
                 for p in self.trade_off
             ],
+            "hardware": hardware_rows(self.hardware),
+            "warnings": list(self.hardware.warnings) if self.hardware else [],
+            "as_built": {"pipe_peak": self.as_built},
+            "tolerance": tolerance_row(self.tolerance),
+            "sensitivities": [vars(item) for item in self.sensitivities],
             "screened": self.screened,
             "discarded": list(self.discarded),
             "verdict": self.verdict,
@@ -179,6 +197,19 @@ class DesignStudy:
             values = [getattr(p.design, name) for p in curve]
             variables[f"margin_{name}"] = labelled("margin_index", values, f"{name} over mass of the pipe", unit)
         return xr.Dataset(variables, attrs={"frahm": self.version, "case": self.case.name, "verdict": self.verdict})
+
+
+def hardware_rows(sheet: Hardware | None) -> list[dict[str, Any]]:
+    """The hardware sheet as plain data."""
+    return [] if sheet is None else [vars(item) for item in sheet.items]
+
+
+def tolerance_row(band: ToleranceBand | None) -> dict[str, Any] | None:
+    """The tolerance band as plain data."""
+    if band is None:
+        return None
+    return {"tolerance": band.tolerance, "pipe_peak": band.pipe_peak, "corner": _parameters(band.corner),
+            "verified": band.verified, "breaks": band.breaks}  # fmt: skip
 
 
 def rival_row(rival: Rival) -> dict[str, Any]:

@@ -55,6 +55,8 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
              number(p.worst_pipe_peak), "yes" if p.verified else "no")
             for p in study.trade_off
         ],
+        hardware=hardware_rows(study),
+        sensitivities=sensitivity_rows(study),
         plots={},
         images=images,
     )  # fmt: skip
@@ -81,6 +83,21 @@ def error_rows(study: DesignStudy) -> list[tuple[str, ...]]:
         )
         for name, peaks in study.error_table.items()
     ]
+
+
+def hardware_rows(study: DesignStudy) -> list[tuple[str, ...]]:
+    """Name, value, unit, origin of every line of the hardware sheet."""
+    items = study.hardware.items if study.hardware else ()
+    return [(item.name, number(item.value), item.unit, item.basis) for item in items]
+
+
+def sensitivity_rows(study: DesignStudy) -> list[tuple[str, ...]]:
+    """Parameter, slope of the peak, slope of the force margin."""
+    return [(s.parameter, f"{s.pipe_peak:+.3g}", _slope(s.force_margin)) for s in study.sensitivities]
+
+
+def _slope(value: float) -> str:
+    return "-" if math.isnan(value) else f"{value:+.3g}"
 
 
 def _margin(value: float) -> str:

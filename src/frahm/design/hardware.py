@@ -1,0 +1,183 @@
+"""The chosen design as hardware: springs, wires, damper, strokes, forces, sag, and what to mind."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from frahm.case import Absorber, Case, PolynomialLaw
+from frahm.design.absorber import DesignedAbsorber
+from frahm.errors import check_number
+
+GRAVITY = 9.80665
+STEEL_MODULUS, SHEAR_MODULUS = 2.06e11, 7.9e10  # [Pa]
+MOST_SPRING_STROKE = 0.25  # of the free length: transverse springs are cubic within 4.5 % up to there
+MOST_WIRE_STROKE = 0.07  # of half the span
+SPRING_INDEX, ALLOWED_SHEAR = 8.0, 4.0e8  # of coil springs: mean over wire diameter [-], shear stress [Pa]
+_YEAR = 365.25 * 86_400.0
+
+
+@dataclass(frozen=True)
+class HardwareItem:
+    """One line of the sheet: what, its value in SI units, and where it comes from."""
+
+    name: str
+    value: float
+    unit: str
+    basis: str
+
+
+@dataclass(frozen=True)
+class Hardware:
+    """Sheet of a design.
+
+    Attributes
+    ----------
+    items : tuple of HardwareItem
+    warnings : tuple of str
+    """
+
+    items: tuple[HardwareItem, ...]
+    warnings: tuple[str, ...]
+
+    def value(self, name: str) -> float:
+        """Value of the line of that name [SI]."""
+        return next(item.value for item in self.items if item.name == name)
+
+
+def transverse_pair_ratio(stroke_over_length: float) -> float:
+    """Exact over cubic force of two transverse springs at y/L: 2 (1 - 1/sqrt(1 + s^2))/s^2 [-].
+
+    The exact force is 2 k_s y (1 - L/sqrt(L^2 + y^2)), its leading term k_s y^3/L^2.
+    """
+    s = check_number("stroke_over_length", stroke_over_length, above=0)
+    return 2 * (1 - 1 / math.hypot(1.0, s)) / s**2
+
+
+def as_built(case: Case, design: DesignedAbsorber, stroke: float) -> Case:
+    """The case with the exact force of the transverse springs of the sheet in place of the cubic law.
+
+    2 k_s y (1 - L/sqrt(L^2 + y^2)) = k3 y^3 (1 - 3/4 s^2 + 5/8 s^4 - 35/64 s^6 + ...) with s = y/L, L a quarter of
+    which is the stroke: four terms miss it by less than 1e-5 up to there.
+    """
+    host = case.pipe.mass
+    k3, length = host * design.kappa, stroke / MOST_SPRING_STROKE
+    odd = (1.0, -0.75 / length**2, 0.625 / length**4, -35 / 64 / length**6)
+    coefficients = [host * design.linear, 0.0]
+    for factor in odd:
+        coefficients += [k3 * factor, 0.0]
+    law = PolynomialLaw(coefficients=tuple(coefficients[:-1]), damping=host * design.xi2)
+    old = case.absorbers[0] if case.absorbers else None
+    kept = {} if old is None else {key: getattr(old, key) for key in old.model_fields_set}
+    new = Absorber(**(kept | {"mass": host * design.rho2, "law": law}))
+    return Case(
+        **({key: getattr(case, key) for key in case.model_fields_set} | {"absorbers": (new, *case.absorbers[1:])})
+    )
+
+
+def hardware(case: Case, design: DesignedAbsorber, stroke: float, frequency: float) -> Hardware:
+    """Sheet of a design on a case.
+
+    Parameters
+    ----------
+    case : Case
+    design : DesignedAbsorber
+    stroke : float
+        Largest displacement between absorber and pipe, force margin included [m].
+    frequency : float
+        Excitation frequency at the worst [rad/s].
+
+    Returns
+    -------
+    Hardware
+        Two transverse springs of free length L on either side (k3 = k_s/L^2, L so that the stroke is a quarter of it),
+        or two wires of length L (k3 = E A/L^3); linear springs beside them, or a pretension T0 in them that adds
+        2 T0/L. Coil springs by tau = 8 F C K/(pi d^2) with Wahl's factor K and k = G d/(8 C^3 n) (textbook formulas,
+        secondary).
+    """
+    host = case.pipe.mass
+    mass, k1, k3, c = (host * value for value in (design.rho2, design.linear, design.kappa, design.xi2))
+    items = [
+        HardwareItem("moving mass", mass, "kg", "rho2 times the mass of the pipe"),
+        HardwareItem("damper coefficient", c, "N s/m", "xi2 times the mass of the pipe"),
+        HardwareItem("largest stroke", stroke, "m", "largest relative peak of all attractors, force margin included"),
+        HardwareItem("largest damper force", c * frequency * stroke, "N", "c Omega z, harmonic at the largest stroke"),
+        HardwareItem("heat in the damper", 0.5 * c * (frequency * stroke) ** 2, "W", "c (Omega z)^2/2"),
+    ]
+    friction = math.pi / 4 * c * frequency * stroke
+    items.append(HardwareItem("friction as strong as the damper", friction, "N", "pi/4 c Omega z: keep far below it"))
+    if k1:
+        items.append(HardwareItem("linear stiffness", k1, "N/m", "linear times the mass of the pipe"))
+    if k3:
+        items.append(HardwareItem("cubic stiffness", k3, "N/m^3", "kappa times the mass of the pipe"))
+        items += _transverse_springs(k1, k3, stroke, frequency)
+        items += _wires(k1, k3, stroke)
+    sag = _sag(mass * GRAVITY, k1, k3)
+    items.append(HardwareItem("sag if gravity acts along the motion", sag, "m", "k1 s + k3 s^3 = m g"))
+    return Hardware(tuple(items), _warnings(design, stroke, sag))
+
+
+def _transverse_springs(k1: float, k3: float, stroke: float, frequency: float) -> list[HardwareItem]:
+    length = stroke / MOST_SPRING_STROKE
+    stiffness = k3 * length**2
+    extension = math.hypot(length, stroke) - length
+    pretension = 0.5 * k1 * length
+    force = stiffness * extension + pretension
+    wahl = (4 * SPRING_INDEX - 1) / (4 * SPRING_INDEX - 4) + 0.615 / SPRING_INDEX
+    wire = math.sqrt(8 * force * SPRING_INDEX * wahl / (math.pi * ALLOWED_SHEAR))
+    coils = SHEAR_MODULUS * wire / (8 * SPRING_INDEX**3 * stiffness)
+    items = [
+        HardwareItem("spring free length L, each side", length, "m", "stroke over 0.25: force within 4.5 % of cubic"),
+        HardwareItem("spring stiffness k_s, each side", stiffness, "N/m", "k3 L^2"),
+        HardwareItem("spring extension at the stroke", extension, "m", "sqrt(L^2 + z^2) - L"),
+        HardwareItem("spring force at the stroke", force, "N", "k_s times extension, with pretension"),
+        HardwareItem("exact over cubic force at the stroke", transverse_pair_ratio(stroke / length), "-", "exact law"),
+        HardwareItem("coil spring wire diameter", wire, "m", "shear stress 400 MPa, spring index 8 (secondary)"),
+        HardwareItem("coil spring active coils", coils, "-", "G d/(8 C^3 k_s) (secondary)"),
+        HardwareItem("spring extensions a year", 2 * frequency / (2 * math.pi) * _YEAR, "-", "two a cycle, all year"),
+    ]
+    if k1:
+        items.append(HardwareItem("pretension for the linear part", pretension, "N", "T0 = k1 L/2, at length L"))
+    return items
+
+
+def _wires(k1: float, k3: float, stroke: float) -> list[HardwareItem]:
+    length = stroke / MOST_WIRE_STROKE
+    area = k3 * length**3 / STEEL_MODULUS
+    range_ = 0.5 * STEEL_MODULUS * MOST_WIRE_STROKE**2
+    items = [
+        HardwareItem("wire length L, each side", length, "m", "stroke over 0.07, instead of springs"),
+        HardwareItem("wire cross-section", area, "m^2", "k3 L^3/E, steel"),
+        HardwareItem("wire diameter", math.sqrt(4 * area / math.pi), "m", "solid wire"),
+        HardwareItem("wire stress range", range_, "Pa", "E z^2/(2 L^2), twice a cycle"),
+    ]
+    if k1:
+        items.append(HardwareItem("wire pretension for the linear part", 0.5 * k1 * length, "N", "T0 = k1 L/2"))
+    return items
+
+
+def _sag(weight: float, k1: float, k3: float) -> float:
+    """Positive root of k3 s^3 + k1 s = weight."""
+    if not k3:
+        return weight / k1
+    if not k1:
+        return float((weight / k3) ** (1 / 3))
+    p, q = k1 / k3, weight / k3
+    root = math.sqrt(q * q / 4 + p**3 / 27)
+    s = (q / 2 + root) ** (1 / 3) - (root - q / 2) ** (1 / 3)
+    for _ in range(3):  # the difference loses digits where the linear part dominates
+        s -= (s * (s * s + p) - q) / (3 * s * s + p)
+    return float(s)
+
+
+def _warnings(design: DesignedAbsorber, stroke: float, sag: float) -> tuple[str, ...]:
+    warnings = []
+    if sag > 0.1 * stroke:
+        warnings.append(
+            f"Gravity along the motion would make the mass sag by {sag:.3g} m against a stroke of {stroke:.3g} m, which breaks the"
+            " symmetry the design relies on: let it move horizontally, or carry the weight with a counter-spring."
+        )
+    warnings.append("On a vertical pipe the direction of the wind varies: the device must work in two directions.")
+    if design.kappa:
+        warnings.append("The springs stretch twice a cycle: their fatigue counts twice the cycles of the pipe.")
+    return tuple(warnings)

@@ -1,0 +1,80 @@
+"""`frahm design` with input it cannot use: one message, exit code 2."""
+
+import re
+
+import pytest
+from typer.testing import CliRunner
+
+import frahm
+from frahm.cli import app
+from frahm.design import DesignedAbsorber, DesignSettings
+
+
+def design(tmp_path, *arguments):
+    return CliRunner().invoke(app, ["design", "jacket-pipe", "--out", str(tmp_path / "out"), *map(str, arguments)])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--family", "sinks"), "family"),
+        (("--mass-ratio", -1), "mass_ratio"),
+        (("--scatter", 0.9), "scatter"),
+        (("--force-margin", 0.9), "force_margin"),
+        (("--samples", 0), "samples"),
+        (("--stroke", 0), "stroke"),
+    ],
+)
+def test_a_number_out_of_bounds_is_named(tmp_path, arguments, words):
+    done = design(tmp_path, *arguments)
+    assert done.exit_code == 2
+    assert words in done.output
+    assert "Traceback" not in done.output
+
+
+@pytest.mark.parametrize("kappa", [(5.0, 2.0), (2.0, 2.0), (1.0,), "wide", (-1.0, 5.0), (1.0, float("inf"))])
+def test_an_empty_or_inverted_range_is_refused(kappa):
+    with pytest.raises(frahm.ParameterError, match="kappa"):
+        DesignSettings(kappa=kappa)
+
+
+def test_an_unknown_setting_is_refused_with_the_nearest():
+    with pytest.raises(frahm.ParameterError, match="force_margin"):
+        frahm.design_absorber("jacket-pipe", force_margins=1.2)
+
+
+def test_limits_no_design_keeps_name_the_one_that_binds(tmp_path):
+    done = design(tmp_path, "--stroke", 1e-4)
+    assert done.exit_code == 2
+    assert re.search(r"binds: stroke at most 0\.0001 m", done.output.replace("\n", " "))
+
+
+def test_a_second_nonlinear_absorber_is_refused():
+    case = frahm.load_case("jacket-pipe")
+    other = case.absorbers[0].model_copy(update={"name": "other"})
+    both = frahm.load_case(case.to_dict() | {"absorbers": [case.absorbers[0].model_dump(), other.model_dump()]})
+    with pytest.raises(frahm.ParameterError, match=r"absorbers\[1\]"):
+        frahm.design_absorber(both)
+
+
+def test_an_absorber_without_a_spring_is_no_design():
+    with pytest.raises(frahm.ParameterError, match="spring"):
+        DesignedAbsorber(0.02, 0.0, 0.0, 0.01)
+
+
+def test_an_interrupted_design_gives_the_best_so_far_and_says_so(tmp_path, monkeypatch):
+    from frahm.design import designing
+
+    whole = designing._Designing.designed
+
+    def stop_after_the_first(self, family):
+        if family != "tuned":
+            raise KeyboardInterrupt
+        return whole(self, family)
+
+    monkeypatch.setattr(designing._Designing, "designed", stop_after_the_first)
+    done = design(tmp_path, "--family", "tuned", "--samples", 4)
+    assert done.exit_code == 130
+    assert (tmp_path / "out" / "best.yaml").is_file()
+    assert "nterrupted" in (tmp_path / "out" / "summary.json").read_text(encoding="utf-8")
+    assert "Traceback" not in done.output

@@ -1,0 +1,54 @@
+"""The hardware sheet against the exact geometry and printed numbers."""
+
+import numpy as np
+import pytest
+
+import frahm
+from frahm.design import DesignedAbsorber
+from frahm.design.hardware import GRAVITY, as_built, hardware, transverse_pair_ratio
+
+CASE = frahm.load_case("jacket-pipe")
+SINK = DesignedAbsorber(0.02, 0.0, 2922.3, 0.05715)
+
+
+def test_transverse_springs_are_softer_than_cubic_by_the_printed_ratios():
+    assert transverse_pair_ratio(0.25) == pytest.approx(0.955, abs=5e-4)
+    assert transverse_pair_ratio(0.5) == pytest.approx(0.845, abs=1e-3)
+
+
+def test_the_springs_of_the_sheet_have_the_force_of_the_law_that_is_verified():
+    stroke = 0.0133
+    sheet = hardware(CASE, SINK, stroke, 4.87)
+    k, L = sheet.value("spring stiffness k_s, each side"), sheet.value("spring free length L, each side")
+    y = np.linspace(-stroke, stroke, 41)
+    exact = 2 * k * y * (1 - L / np.hypot(L, y))
+    law = frahm.build_system(as_built(CASE, SINK, stroke)).elements[0].law
+    assert law.force(y) == pytest.approx(exact, rel=2e-5, abs=1e-12)
+    assert law.damping == pytest.approx(247 * 0.05715)
+
+
+def test_sag_balances_gravity_and_the_papers_sink_sags_by_more_than_its_stroke():
+    paper = DesignedAbsorber(0.02, 0.0, 367.38, 0.0117)
+    sheet = hardware(CASE, paper, 0.0575, 4.9)
+    assert sheet.value("sag if gravity acts along the motion") == pytest.approx(0.081, abs=5e-4)
+    assert any("counter-spring" in warning for warning in sheet.warnings)
+    for design in (DesignedAbsorber(0.02, 0.35, 500.0, 0.03), DesignedAbsorber(0.02, 0.46, 0.0, 0.017)):
+        sag = hardware(CASE, design, 0.02, 4.9).value("sag if gravity acts along the motion")
+        assert design.linear * sag + design.kappa * sag**3 == pytest.approx(0.02 * GRAVITY, rel=1e-9)
+
+
+def test_coil_spring_has_its_stiffness_and_stress():
+    sheet = hardware(CASE, SINK, 0.0133, 4.87)
+    wire, coils = sheet.value("coil spring wire diameter"), sheet.value("coil spring active coils")
+    mean = 8 * wire
+    assert 7.9e10 * wire**4 / (8 * mean**3 * coils) == pytest.approx(sheet.value("spring stiffness k_s, each side"))
+    wahl = 31 / 28 + 0.615 / 8
+    stress = 8 * sheet.value("spring force at the stroke") * mean * wahl / (np.pi * wire**3)
+    assert stress == pytest.approx(4e8)
+
+
+def test_wires_have_the_cubic_stiffness():
+    sheet = hardware(CASE, SINK, 0.0133, 4.87)
+    length, area = sheet.value("wire length L, each side"), sheet.value("wire cross-section")
+    assert 2.06e11 * area / length**3 == pytest.approx(247 * 2922.3)
+    assert sheet.value("wire stress range") == pytest.approx(2.06e11 * 0.0133**2 / (2 * length**2))
