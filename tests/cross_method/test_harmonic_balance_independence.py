@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 import frahm
 from frahm.harmonic_balance import begin, branches, find_branches
 from frahm.harmonic_balance.events import unstable_count
+from frahm.systems import with_parameters
 
 LO, HI = 0.7, 1.35
 quickly = settings(max_examples=12, deadline=None, derandomize=True, database=None)
@@ -135,3 +136,13 @@ def test_special_points_account_for_every_change_of_the_number_of_unstable_multi
                 assert abs(count - before) <= passed
                 assert (count - before - passed) % 2 == 0
             before, passed = count, 0
+
+
+@pytest.mark.parametrize("window", [(3.43, 6.37), (4.5, 5.3)])
+def test_a_small_detached_curve_is_found_whatever_the_window(window):
+    # born at 1.0386 times the force; the one-harmonic equations have theirs a little beside it
+    case = frahm.load_case("jacket-pipe").with_absorber(kappa=3016.2478, xi2=0.0574099, rho2=0.02)
+    system = with_parameters(frahm.build_system(case), force=1.05)
+    curve = frahm.frequency_response(system, frequency=window)
+    assert curve.detached == (False, True)
+    assert curve.largest()[0] == pytest.approx(0.03109, rel=1e-3)

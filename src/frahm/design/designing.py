@@ -58,7 +58,6 @@ class _Found:
     tolerance: ToleranceBand | None = None
     sensitivities: tuple[Sensitivity, ...] = ()
     built: Verification | None = None
-    screened: int = 0
     discarded: list[str] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
 
@@ -163,7 +162,7 @@ class _Designing:
         count = 1 + 2 * math.ceil(settings.scatter / _STEP - 1e-9)
         self.errors = [float(r) for r in np.linspace(1 - settings.scatter, 1 + settings.scatter, count)]
         self.limits = Limits(settings.force_margin, settings.stroke or math.inf, False)
-        self.tiers: dict[str, TierOne] = {}
+        self.tiers: dict[tuple[str, float], TierOne] = {}
         self.done, self.total = 0, 0
 
     def system_of(self, design: DesignedAbsorber) -> System:
@@ -173,7 +172,10 @@ class _Designing:
         return DesignedAbsorber(self.settings.mass_ratio, 0.0, 1.0, 0.0)
 
     def run(self) -> None:
-        families = [self.settings.family, *(f for f in ("sink", "tuned", "mixed") if f != self.settings.family)]
+        # the mixture is held against its corners, so they come first
+        families = ["sink", "tuned", "mixed"]
+        if self.settings.family == "tuned":
+            families = ["tuned", "sink", "mixed"]
         self.total = len(families) + 3 + len(self.settings.margins) + 5
         for family in families:
             rival = self.designed(family)
@@ -196,17 +198,22 @@ class _Designing:
             self.progress(title + so_far, min(self.done, self.total), self.total)
         self.done += 1
 
-    def _tier(self, family: str) -> TierOne:
-        if family not in self.tiers:
+    def _tier(self, family: str, margin: float | None = None) -> TierOne:
+        """Closed form for a family, with the force given and with its margin."""
+        most = self.settings.force_margin if margin is None else margin
+        if (family, most) not in self.tiers:
             windows = self.windows
+            forces = sorted({1.0, most}) if family != "tuned" else [1.0]
             screening = Screening(
                 self.host,
-                self.host.conditions(self.errors, windows.window, _RESPONSE_POINTS, moving=windows.moving),
+                self.host.conditions(
+                    self.errors, windows.window, _RESPONSE_POINTS, moving=windows.moving, forces=forces
+                ),
                 self.host.conditions(self.errors, windows.wide, _BIRTH_POINTS),
             )
             space = design_space(self.host, self.case.pipe.mass, family, self.settings)
-            self.tiers[family] = TierOne(screening, space)
-        return self.tiers[family]
+            self.tiers[family, most] = TierOne(screening, space)
+        return self.tiers[family, most]
 
     def _binding(self, family: str) -> str:
         return self._tier(family).binding(self.limits)
@@ -218,7 +225,7 @@ class _Designing:
         return ", ".join(parts)
 
     def _finalists(self, family: str, limits: Limits) -> list[Finalist]:
-        tier = self._tier(family)
+        tier = self._tier(family, limits.force_margin)
         kept, discarded = finalists(tier, self.system_of, self.windows, self.errors, limits)
         self.found.discarded += [f"{_DEVICES[family]}: {reason}" for reason in discarded]
         return kept
@@ -248,7 +255,6 @@ class _Designing:
                     self.found.with_margin = more
             else:
                 self._discard(rival, "it is not better")
-        self.found.screened += self._tier(family).count
         return best
 
     def _cornered(self, family: str) -> Rival | None:
@@ -376,7 +382,7 @@ class _Designing:
             tolerance=found.tolerance,
             sensitivities=found.sensitivities,
             as_built=found.built.pipe_peak if found.built else math.nan,
-            screened=found.screened,
+            screened=sum(tier.count for tier in self.tiers.values()),
             discarded=tuple(dict.fromkeys(found.discarded)),
             verdict=verdict(rivals, self.settings.errors, found.table, self.settings.scatter),
             unverified=tuple(dict.fromkeys(doubts)),

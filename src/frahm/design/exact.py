@@ -43,15 +43,15 @@ class ExactJudgement:
     Attributes
     ----------
     pipe_peak, relative_peak : float
-        Largest over all branches, frequencies and frequency errors [m].
+        Largest over all branches, frequencies and frequency errors with the force given [m].
     error, frequency : float
         Where the pipe peak occurs.
     growth_rate : float
         Largest growth rate of a disturbance [1/s], saddles of multivalued responses left out.
     detached : bool
-        Whether there is a detached curve.
+        Whether there is a detached curve with the force given.
     peaks : tuple of float
-        Largest pipe peak at every frequency error [m].
+        Largest pipe peak over the factor on the force [m], for every force and every frequency error.
     unverified : tuple of str
     """
 
@@ -77,25 +77,44 @@ def disturbed(system: System, error: float = 1.0, force: float = 1.0) -> System:
     return with_parameters(system, pipe_frequency=error * system.reference_frequency, force=error**2 * force)
 
 
-def exact_judgement(system: System, windows: Windows, errors: Sequence[float], force: float = 1.0) -> ExactJudgement:
-    """All periodic responses of a design under all frequency errors."""
-    worst, stroke, at, growth, detached = -1.0, 0.0, (1.0, math.nan), -math.inf, False
-    doubts: list[str] = []
-    peaks: list[float] = []
-    for error in errors:
-        window, wide = windows.at(error)
-        curve = frequency_response(disturbed(system, error, force), frequency=wide)
-        inside = (curve.frequency >= window[0]) & (curve.frequency <= window[1])
-        peak = np.where(inside, curve.pipe_peak, -1.0)
-        index = int(np.argmax(peak))
-        peaks.append(float(peak[index]))
-        if peak[index] > worst:
-            worst, at = float(peak[index]), (float(error), float(curve.frequency[index]))
-        stroke = max(stroke, float(np.max(np.where(inside, curve.relative_peak, 0.0))))
-        growth = max(growth, _growth(curve, inside))
-        detached = detached or has_detached(curve)
-        doubts += curve.unverified
-    return ExactJudgement(worst, stroke, *at, growth, detached, tuple(peaks), tuple(dict.fromkeys(doubts)))
+def exact_judgement(
+    system: System, windows: Windows, errors: Sequence[float], forces: Sequence[float] = (1.0,)
+) -> ExactJudgement:
+    """All periodic responses of a design under all frequency errors, with the first of the forces and with the others.
+
+    A response that jumps up before the force has its margin shows in `peaks`.
+    """
+    looks = [_look(system, windows, error, force) for force in forces for error in errors]
+    given = looks[: len(errors)]
+    worst = max(given, key=lambda look: look.pipe_peak)
+    return ExactJudgement(
+        pipe_peak=worst.pipe_peak,
+        relative_peak=max(look.relative_peak for look in given),
+        error=worst.error,
+        frequency=worst.frequency,
+        growth_rate=max(look.growth_rate for look in looks),
+        detached=any(look.detached for look in given),
+        peaks=tuple(peak for look in looks for peak in look.peaks),
+        unverified=tuple(dict.fromkeys(doubt for look in looks for doubt in look.unverified)),
+    )
+
+
+def _look(system: System, windows: Windows, error: float, force: float) -> ExactJudgement:
+    window, wide = windows.at(error)
+    curve = frequency_response(disturbed(system, error, force), frequency=wide)
+    inside = (curve.frequency >= window[0]) & (curve.frequency <= window[1])
+    peak = np.where(inside, curve.pipe_peak, -1.0)
+    index = int(np.argmax(peak))
+    return ExactJudgement(
+        pipe_peak=float(peak[index]),
+        relative_peak=float(np.max(np.where(inside, curve.relative_peak, 0.0))),
+        error=float(error),
+        frequency=float(curve.frequency[index]),
+        growth_rate=_growth(curve, inside),
+        detached=has_detached(curve),
+        peaks=(float(peak[index]) / force,),
+        unverified=curve.unverified,
+    )
 
 
 def has_detached(curve: ResponseCurve) -> bool:

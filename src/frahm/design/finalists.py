@@ -94,6 +94,8 @@ def finalists(
                 break
             last = finalist.predicted
             corrections = _corrected(corrections, judged[0], finalist, birth, decay if stable else -math.inf)
+            # where the closed form has its detached curves too early, it must not be asked for the whole margin
+            tier = tier.reloaded(limits.force_margin / corrections.birth)
     return sorted(kept, key=lambda finalist: finalist.predicted), list(dict.fromkeys(discarded))
 
 
@@ -104,7 +106,8 @@ def _judged(
     """The finalist, and the birth factor between what is known to be free and what is known not to be."""
     design = tier.space.absorber(row)
     system = system_of(design)
-    exact = exact_judgement(system, windows, errors)
+    forces = sorted({1.0, limits.force_margin}) if row[2] else [1.0]
+    exact = exact_judgement(system, windows, errors, forces)
     free, taken = math.inf, math.inf
     if row[2]:
         guess = judged[0, BIRTH] * corrections.birth
@@ -112,7 +115,7 @@ def _judged(
         order = np.argsort(tier.screening.births_by_error(row), kind="stable")
         critical_first = [errors[i] for i in order]
         free, taken = exact_birth(system, windows, critical_first, guess if math.isfinite(guess) else most, most)
-    as_exact = np.array([[0.0, exact.growth_rate, math.inf, judged[0, CEILING], exact.pipe_peak]])
+    as_exact = np.array([[0.0, exact.growth_rate, math.inf, judged[0, CEILING], max(exact.peaks)]])
     predicted = float(predicted_peaks(as_exact, Limits(1.0, math.inf, False), Corrections())[0])
     known = free if math.isinf(taken) else free - _MISSED
     return Finalist(design, predicted, exact, known, math.isinf(taken)), 0.5 * (free + taken)
@@ -124,7 +127,7 @@ def _corrected(old: Corrections, judged: Floats, finalist: Finalist, birth: floa
     known = math.isfinite(judged[BIRTH]) and not finalist.open_ended
     offset = exact.growth_rate - judged[GROWTH]
     return Corrections(
-        peaks=np.clip(np.array(exact.peaks) / judged[PEAKS:], *_TRUSTED),
+        peaks=np.clip(np.resize(exact.peaks, judged[PEAKS:].shape) / judged[PEAKS:], *_TRUSTED),
         stroke=exact.relative_peak / judged[STROKE],
         birth=(birth - 1.5 * _MISSED) / judged[BIRTH] if known else old.birth,
         damping=decay + offset if math.isfinite(decay) and math.isfinite(offset) else old.damping,

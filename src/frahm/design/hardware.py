@@ -174,8 +174,8 @@ def _warnings(design: DesignedAbsorber, stroke: float, sag: float) -> tuple[str,
     warnings = []
     if sag > 0.1 * stroke:
         warnings.append(
-            f"Gravity along the motion would make the mass sag by {sag:.3g} m against a stroke of {stroke:.3g} m, which breaks the"
-            " symmetry the design relies on: let it move horizontally, or carry the weight with a counter-spring."
+            f"Gravity along the motion would make the mass sag by {sag:.3g} m against a stroke of {stroke:.3g} m, which"
+            " breaks the symmetry the design relies on: let it move horizontally, or carry it by a counter-spring."
         )
     warnings.append("On a vertical pipe the direction of the wind varies: the device must work in two directions.")
     if design.kappa:

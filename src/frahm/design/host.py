@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,12 +24,14 @@ from frahm.systems import System
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Excitations a design is judged under: rows are frequency errors of the pipe, columns excitation frequencies.
+    """Excitations a design is judged under: rows are pairs of frequency error and force, columns frequencies.
 
     Attributes
     ----------
     errors : ndarray, shape (R,)
         r: natural frequency of the pipe over the one it was designed for [-].
+    forces : ndarray, shape (R,)
+        Factors on the force [-].
     frequency : ndarray, shape (R, W)
         Omega [rad/s], ascending in a row.
     a, u, b, x : ndarray of complex, shape (R, W)
@@ -37,11 +39,18 @@ class Conditions:
     """
 
     errors: Floats
+    forces: Floats
     frequency: Floats
     a: Complexes
     u: Complexes
     b: Complexes
     x: Complexes
+
+    def reloaded(self, margin: float) -> Conditions:
+        """The same with another factor on the force where it is not 1."""
+        forces = np.where(self.forces == 1.0, 1.0, margin)
+        scale = (forces / self.forces)[:, None]
+        return replace(self, forces=forces, u=scale * self.u, x=scale * self.x)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,16 +110,23 @@ class Host:
         return np.asarray(modes[:, index])
 
     def conditions(
-        self, errors: Sequence[float], window: tuple[float, float], count: int, *, moving: bool = True
+        self,
+        errors: Sequence[float],
+        window: tuple[float, float],
+        count: int,
+        *,
+        moving: bool = True,
+        forces: Sequence[float] = (1.0,),
     ) -> Conditions:
         """Conditions over a window of Omega [rad/s], `count` frequencies denser around the resonance.
 
-        With `moving` the window moves with the frequency of the pipe.
+        With `moving` the window moves with the frequency of the pipe. Rows: all errors at the first force, and so on.
         """
-        factors = np.asarray(errors, dtype=float)
+        factors, loads = np.tile(np.asarray(errors, dtype=float), len(forces)), np.repeat(forces, len(errors))
         grid = [_dense_grid(*_moved(window, r, moving), self.frequency * r, count) for r in factors]
         tables = zip(*(self.receptances(row, float(r)) for row, r in zip(grid, factors, strict=True)), strict=True)
-        return Conditions(factors, np.array(grid), *(np.array(table) for table in tables))
+        a, u, b, x = (np.array(table) for table in tables)
+        return Conditions(factors, loads, np.array(grid), a, loads[:, None] * u, b, loads[:, None] * x)
 
     def receptances(self, frequency: Floats, error: float = 1.0) -> tuple[Complexes, Complexes, Complexes, Complexes]:
         """a, u_F, b, x_F at frequencies (W,) of a pipe whose natural frequency is off by a factor.

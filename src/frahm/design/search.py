@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
@@ -66,12 +68,19 @@ class TierOne:
         self.grid_judged = self.judge(designs)
 
     def judge(self, designs: Floats) -> Floats:
-        """Stroke [m], growth [1/s], birth [-], ceiling [m], then the pipe's amplitudes [m]: (D, 4 + R)."""
+        """Stroke [m], growth [1/s], birth [-], ceiling [m], then pipe amplitudes over the force [m]: (D, 4 + R)."""
         self.count += len(designs)
         screening = self.screening
         births, ceilings = screening.births(designs), fold_ceilings(screening, designs)
         peaks, others = screening.responses(designs)
-        return np.column_stack([others, births, ceilings, peaks])
+        return np.column_stack([others, births, ceilings, peaks / screening.conditions.forces])
+
+    def reloaded(self, margin: float) -> TierOne:
+        """The same with another margin on the force, and the grid judged before to start from."""
+        other = copy.copy(self)
+        conditions = self.screening.conditions.reloaded(margin)
+        other.screening = dataclasses.replace(self.screening, conditions=conditions)
+        return other
 
     def best(self, limits: Limits, corrections: Corrections) -> tuple[Floats, float] | None:
         """Design (4,) with the least predicted pipe peak [m], and that peak; None if no design keeps the limits.

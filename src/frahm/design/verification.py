@@ -200,7 +200,7 @@ def _joined(found: dict[float, WorstCase], samples: int) -> Verification:
 def _linear(system: System, windows: Windows, errors: Sequence[float], force: float) -> Verification:
     """A damped linear system has one response, which attracts every motion: the exact curve is the proof."""
     fine = np.linspace(min(errors), max(errors), 4 * len(errors) - 3) if len(errors) > 1 else np.array(errors)
-    exact = exact_judgement(system, windows, [float(r) for r in fine], force)
+    exact = exact_judgement(system, windows, [float(r) for r in fine], (force,))
     stable = exact.growth_rate < 0
     doubts = exact.unverified + (() if stable else ("The linear response is not stable.",))
     return Verification(

@@ -36,6 +36,7 @@ _LONGEST = 0.02
 _SEED_FREQUENCIES = 17
 _QUICK = 0.2  # way of a multiplier near the unit circle from point to point that asks for a point between
 _GRID = 401
+_SHORT_RANGE, _AROUND = 16, 9  # points of the grid in a short range of three roots; frequencies looked at around it
 _STRONG_FREQUENCIES = 9
 _STRONG_THIRD = 0.12  # third harmonic beside the first from where on both are searched together
 _CROSSING = 5e-3  # of a point: how near a branch passes that crosses another one there
@@ -150,10 +151,16 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
     counts, excess = np.empty(_GRID, np.int64), np.empty(_GRID)
     count_cubic(search.problem, grid, e[1], counts, excess)
     edges = np.flatnonzero(np.diff(counts)) + 1
-    middles = [grid[run[len(run) // 2]] for run in np.split(np.arange(_GRID), edges)]
+    runs = np.split(np.arange(_GRID), edges)
+    middles = [grid[run[len(run) // 2]] for run in runs]
     inner = excess[1:-1]
     almost = np.flatnonzero((inner > excess[:-2]) & (inner > excess[2:]) & (inner < 0)) + 1
-    return np.unique(np.concatenate([spread[[0, -1]], middles])), spread, grid[almost]
+    # a short range of three roots may lie beside that of the exact equations: both are looked at around it, too
+    short = [run for run in runs if counts[run[0]] == 3 and len(run) <= _SHORT_RANGE]
+    step = grid[1] - grid[0]
+    around = [np.linspace(grid[run[0]] - 2 * step, grid[run[-1]] + 2 * step, _AROUND) for run in short]
+    near = np.concatenate([grid[almost], *around])
+    return np.unique(np.concatenate([spread[[0, -1]], middles])), spread, near[(near > search.lo) & (near < search.hi)]
 
 
 def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
