@@ -13,23 +13,25 @@ KINDS = ("periodic", "modulated", "unsettled")
 PERIODIC_BELOW = 1e-3
 STEADY_WITHIN = 0.3
 _SHORTEST = 80
+_HARDLY = 1e-2
 
 
 def section_spread(history: TimeHistory) -> float:
     """Half range of the Poincare section over its largest state, the worse of displacement and velocity; 0 if periodic.
 
-    Displacements and velocities of each coordinate are compared with the peak of that coordinate over the history.
+    Displacements and velocities of each coordinate are compared with the peak of that coordinate over the history, of a
+    coordinate that hardly moves with a hundredth of the largest: what is left there may be rounding.
     """
     section = history.poincare()
     spread = 0.0
-    for i in range(history.x.shape[1]):
-        for values, whole in (
-            (section["displacement"].values[:, i], history.x[:, i]),
-            (section["velocity"].values[:, i], history.v[:, i]),
-        ):
-            size = float(np.max(np.abs(whole), initial=0.0))
-            if size > 0:
-                spread = max(spread, float(np.ptp(values)) / 2 / size)
+    for values, whole in (
+        (section["displacement"].values, history.x),
+        (section["velocity"].values, history.v),
+    ):
+        sizes = np.max(np.abs(whole), axis=0, initial=0.0)
+        sizes = np.maximum(sizes, _HARDLY * np.max(sizes, initial=0.0))
+        ranges = np.ptp(values, axis=0) / 2
+        spread = max(spread, float(np.max(ranges[sizes > 0] / sizes[sizes > 0], initial=0.0)))
     return spread
 
 
