@@ -223,6 +223,8 @@ def _third_harmonic(search: Search, tracks: list[Track]) -> float:
     """Largest third harmonic of a single element beside its first, on the symmetric branches in the window."""
     ratios = [0.0]
     for track in tracks:
+        if track.ys.shape[1] < 5:  # two columns a harmonic and the frequency: not a third harmonic at all
+            continue
         inside = (track.frequency >= search.lo) & (track.frequency <= search.hi) & (track.Hs >= 3)
         first, third = (
             np.hypot(track.ys[inside, 0], track.ys[inside, 1]),
