@@ -1,7 +1,7 @@
 """Room `harmonic_balance`: exact periodic responses, every branch, with Floquet multipliers and special points."""
 
 from frahm.harmonic_balance.branches import Search, Track, begin, connected, find_branches
-from frahm.harmonic_balance.linear import is_linear, linear_growth, linear_response
+from frahm.harmonic_balance.linear import check_rest, is_linear, linear_growth, linear_response
 from frahm.harmonic_balance.responses import PeriodicResponse, periodic_responses_of, responses_on
 
 __all__ = [
@@ -9,6 +9,7 @@ __all__ = [
     "Search",
     "Track",
     "begin",
+    "check_rest",
     "connected",
     "find_branches",
     "is_linear",

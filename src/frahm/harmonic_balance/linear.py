@@ -15,6 +15,15 @@ def is_linear(system: System) -> bool:
     return all(element.law.is_linear for element in system.elements)
 
 
+def check_rest(system: System) -> None:
+    """Refuse a system at rest whose elements carry weight: it sags, and is not linear about where it hangs."""
+    if any(element.law.weight for element in system.elements):
+        raise ParameterError(
+            "forcing", system.forcing.tolist(), "a force that is not zero where an element carries weight",
+            hint="Without a force there is nothing but the sag: see frahm.absorbers.sag.",
+        )  # fmt: skip
+
+
 def linear_response(system: System, frequency: Floats) -> Complexes:
     """Complex amplitudes (points, n) [m] of the linear part: x = Re X e^{i Omega t}.
 

@@ -14,7 +14,7 @@ from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import unstable_count
 from frahm.harmonic_balance.floquet import monodromy, variation_of
 from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic
-from frahm.harmonic_balance.linear import is_linear, linear_exponents, linear_response
+from frahm.harmonic_balance.linear import check_rest, is_linear, linear_exponents, linear_response
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of
 from frahm.systems import System
@@ -170,6 +170,7 @@ def _same(a: PeriodicResponse, b: PeriodicResponse) -> bool:
 
 def _linear(system: System, W: float) -> PeriodicResponse:
     """The only response of a linear or unforced system (its rest, where nothing drives it)."""
+    check_rest(system)
     X = linear_response(system, np.array([W]))[0]
     multipliers = np.exp(linear_exponents(system) * 2 * np.pi / W)
     first = system.elements[0].direction if system.elements else np.zeros(system.size)

@@ -12,6 +12,7 @@ from frahm.harmonic_balance import (
     Search,
     Track,
     begin,
+    check_rest,
     connected,
     find_branches,
     is_linear,
@@ -121,6 +122,7 @@ def _growth(track: Track) -> Floats:
 def _linear_curve(
     system: System, lo: float, hi: float, settings: dict[str, Any], forcing: Floats | None
 ) -> ResponseCurve:
+    check_rest(system)
     inside = system.natural_frequencies[(system.natural_frequencies > lo) & (system.natural_frequencies < hi)]
     W = np.unique(np.concatenate([np.linspace(lo, hi, _LINEAR_POINTS), inside]))
     driven = bool(np.any(system.forcing))

@@ -198,6 +198,16 @@ def test_bad_numbers_are_named(make, name):
     assert caught.value.name == name
 
 
+def test_rest_under_weight_is_no_response_of_a_linear_system():
+    system = frahm.System(
+        np.eye(2), np.zeros((2, 2)), np.diag([1.0, 0.0]), (0.0, 0.0),
+        [frahm.Element((-1, 1), frahm.Cubic(1.0, 0.1, weight=0.2))],
+    )  # fmt: skip
+    for verb in (frahm.periodic_responses, frahm.frequency_response):
+        with pytest.raises(frahm.ParameterError, match="sag"):
+            verb(system, frequency=1.0 if verb is frahm.periodic_responses else (0.9, 1.1))
+
+
 def test_a_law_shows_its_numbers():
     assert repr(frahm.Linear(2.0, weight=1.5)) == "Linear(coefficients=[2.0], damping=0.0, weight=1.5)"
     assert "gap=0.4" in repr(LAWS["everything"])
