@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 
-.PHONY: setup run reproduce test lint types bench docs scatter-study clean
+.PHONY: setup run reproduce test lint types bench docs scatter-study examples validation clean
 
 setup: $(STAMP)
 
@@ -41,5 +41,13 @@ docs: setup
 scatter-study: setup
 	$(BIN)/python examples/scatter_study.py
 
+examples: setup
+	for name in elastic_fatigue design_a_sink; do \
+	  $(BIN)/python examples/$$name.py docs/examples > docs/examples/$$name.txt || exit 1; done
+
+validation: setup
+	$(BIN)/python -m pytest -n 2 --dist worksteal tests/literature
+	cp out/validation.json docs/validation.json
+
 clean:
-	rm -rf $(VENV) out docs/_build .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) out docs/_build docs/_generated .mypy_cache .pytest_cache .ruff_cache .import_linter_cache

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from validation_record import pytest_runtest_logreport, pytest_sessionfinish  # noqa: F401  (hooks)
+
 
 @dataclasses.dataclass(frozen=True)
 class FinishedRun:
