@@ -12,7 +12,11 @@ from frahm.errors import ParameterError
 if TYPE_CHECKING:
     from frahm.case import Case
 
-_OWN_FILES = ("summary.json", "report.html", "results.nc", "best.yaml")
+_OWN_FILES = ("summary.json", "report.html", "report.pdf", "results.nc", "best.yaml")
+
+_OWN_FIGURES = (
+    "response-*", "motion-*", "slow-manifold*", "basin-map*", "unsteady-wind*", "fatigue*", "design-*",
+)  # fmt: skip
 
 
 def default_folder(case: Case) -> Path:
@@ -59,6 +63,16 @@ def holds_case(folder: Path, case: Case) -> bool:
         return False
 
 
+def holds_design(folder: Path) -> bool:
+    """Whether `frahm design` wrote the folder."""
+    from frahm.design.store import SCHEMA
+
+    try:
+        return json.loads((folder / "summary.json").read_text(encoding="utf-8"))["schema"] == SCHEMA
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
 def _same_case(file: Path, case: Case) -> bool:
     from frahm.case import load_case
 
@@ -77,11 +91,7 @@ def _contents(folder: Path) -> str:
 def _forget(folder: Path) -> None:
     """Remove the results of another case, so that they are never taken for those of this one."""
     own = [folder / name for name in _OWN_FILES]
-    own += [
-        path
-        for pattern in ("response-*", "motion-*", "slow-manifold.*", "design-*")
-        for path in folder.glob(f"figures/{pattern}")
-    ]
+    own += [path for pattern in _OWN_FIGURES for path in folder.glob(f"figures/{pattern}")]
     for path in own:
         try:
             path.unlink(missing_ok=True)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from frahm.cli.cases import CaseArgument
+from frahm.cli.folder import holds_design
 from frahm.cli.guarded import ExitCode, held_interrupts
 
 if TYPE_CHECKING:
@@ -45,12 +46,21 @@ def run(
     _conclude(analysis, folder)
 
 
-def report(folder: FolderArgument) -> None:
+def report(
+    folder: FolderArgument,
+    pdf: Annotated[bool, typer.Option("--pdf", help="Write report.pdf too; needs the extra pdf.")] = False,
+) -> None:
     """Build the figures and the report again from the stored results."""
     from frahm.analysis import load_analysis
-    from frahm.report import write_report
+    from frahm.report import REPORT_FILE, write_pdf, write_report
 
-    typer.echo(f"{write_report(load_analysis(folder), folder)} written.")
+    if pdf and holds_design(folder):  # its report stays as `frahm design` wrote it
+        path = folder / REPORT_FILE
+    else:
+        path = write_report(load_analysis(folder), folder)
+        typer.echo(f"{path} written.")
+    if pdf:
+        typer.echo(f"{write_pdf(path)} written.")
 
 
 def show(folder: FolderArgument) -> None:

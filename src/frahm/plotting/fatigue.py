@@ -8,7 +8,7 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.plotting.panels import name_panels, panels
-from frahm.plotting.style import BARE, PIPE, SINK, UNSTABLE_DASHES
+from frahm.plotting.style import BARE, PIPE, SINK, UNSTABLE_DASHES, decade_axis
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -34,6 +34,7 @@ def fatigue_figure(damage: xr.Dataset) -> Figure:
     for name, label, look in _lines(damage):
         upper.stairs(per_speed(damage, name), edges, baseline=None, label=label, **look)
     upper.set(yscale="log", ylabel="damage per wind speed [s/m]", ylim=damage_range(damage))
+    decade_axis(upper.yaxis)
     without = damage["stress_range_without"].values / _MPA
     lower.stairs(
         np.where(np.isfinite(without), without, np.nan), edges, baseline=None, label="without absorbers", **_BARE_LOOK

@@ -7,8 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from frahm.exchange import write_data
 from frahm.plotting.basins import basin_map_figure
 from frahm.plotting.fatigue import fatigue_figure
+from frahm.plotting.figure_data import figure_data
 from frahm.plotting.over_wind import over_wind_figure
 from frahm.plotting.static import manifold_figure, motion_figure, response_figure
 from frahm.plotting.style import figure_style, save_figure
@@ -23,11 +25,13 @@ Drawing = tuple[str, Callable[[], "Figure"]]
 
 
 def save_figures(results: dict[str, Any], data: dict[str, xr.Dataset], folder: str | Path) -> list[Path]:
-    """Draw every figure the results allow into an existing folder, as PNG and SVG; return the paths."""
+    """Draw every figure the results allow into an existing folder, as SVG and PNG, with CSV; return the paths."""
     paths = []
     with figure_style():
         for name, draw in drawings(results, data):
             paths += save_figure(draw(), Path(folder) / name)
+    for name, dataset in figure_data(results, data):
+        paths += write_data(dataset, Path(folder) / f"{name}.csv")
     return paths
 
 

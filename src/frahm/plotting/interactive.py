@@ -12,12 +12,15 @@ from frahm.arrays import Floats
 from frahm.plotting.basins import BASIN_AXES, basin_entries, basin_indices
 from frahm.plotting.lines import (
     DETUNING_LABEL,
+    HEADROOM,
     KIND_NAMES,
     MODULATED_NAMES,
     MOST_LABELS,
     QUANTITY_LABELS,
     Line,
+    beyond_the_top,
     envelopes,
+    interesting_range,
     largest_finite,
     line_colour,
     lines_by_name,
@@ -73,8 +76,23 @@ def response_plot(
     _add_special_points(figure, curve, quantity)
     figure.update_layout(**plot_layout(520))
     figure.update_xaxes(title_text=DETUNING_LABEL)
-    figure.update_yaxes(title_text=QUANTITY_LABELS[quantity], title_standoff=8, range=[0, 1.12 * top or 1.0])
+    figure.update_yaxes(title_text=QUANTITY_LABELS[quantity], title_standoff=8, range=[0, HEADROOM * top or 1.0])
+    if bare is not None and quantity == "pipe_peak":
+        _name_what_leaves(figure, bare, HEADROOM * top)
+    narrow = interesting_range(curve, modulated)
+    if narrow is not None:
+        figure.update_layout(meta={"narrow": list(narrow)})
     return figure
+
+
+def _name_what_leaves(figure: go.Figure, bare: xr.Dataset, top: float) -> None:
+    """Say how far the response without absorbers rises where it leaves the figure."""
+    beyond = beyond_the_top(bare, top)
+    if beyond is not None:
+        figure.add_annotation(
+            x=beyond.x, y=1, yref="paper", text=beyond.text.replace("\n", "<br>"), showarrow=False, align="left",
+            xanchor="left", yanchor="top", xshift=6, font={"size": 12, "color": BARE}, bgcolor="rgba(255,255,255,0.8)",
+        )  # fmt: skip
 
 
 def _add_line(figure: go.Figure, line: Line, colour: str, width: float, name: str, **more: Any) -> None:

@@ -31,6 +31,7 @@ KIND_NAMES = {
     "branch-point": "branch point",
 }
 MODULATED_NAMES = {True: "modulated (slow flow)", False: "the same, unstable"}
+HEADROOM = 1.2  # height of the axis over the largest response drawn
 MOST_LABELS = 16  # special points: with more of them the labels would hide what they name
 
 
@@ -119,6 +120,37 @@ def special_marks(curve: xr.Dataset, quantity: str) -> list[Mark]:
         count[kind] = count.get(kind, 0) + 1
         marks.append(Mark(f"{SHORT_NAMES[kind]}{count[kind]}", kind, float(x), float(y)))
     return marks
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """Where a curve leaves the figure at its top, on the side of larger `x`, and what to write there."""
+
+    x: float
+    text: str
+
+
+def beyond_the_top(bare: xr.Dataset, top: float) -> Beyond | None:
+    """What to say of the response without absorbers if it rises beyond `top` [m]; None if it stays below."""
+    x, y = bare["detuning"].values, bare["pipe_peak"].values
+    outside = np.flatnonzero(~(y <= top))
+    if not top or outside.size == 0:
+        return None
+    finite = bool(np.all(np.isfinite(y)))
+    reach = f"up to {np.max(y):.3g} m" if finite else "without bound"
+    return Beyond(float(x[outside[-1]]), f"without absorber\n{reach} ↑")
+
+
+def interesting_range(curve: xr.Dataset, modulated: xr.Dataset | None) -> tuple[float, float] | None:
+    """Detunings around everything special [rad/s]: a narrow screen shows these first; None to show all."""
+    x = curve["detuning"].values
+    places = [curve["special_detuning"].values] if "special_detuning" in curve else []
+    places += [modulated["detuning"].values] if modulated is not None else []
+    known = np.concatenate([*places, [float(x[np.nanargmax(curve["pipe_peak"].values)])]])
+    lo, hi = float(np.min(known)), float(np.max(known))
+    margin = max(0.6 * (hi - lo), 0.1 * float(np.ptp(x)))
+    lo, hi = max(lo - margin, float(np.min(x))), min(hi + margin, float(np.max(x)))
+    return None if hi - lo > 0.75 * float(np.ptp(x)) else (lo, hi)
 
 
 def largest_finite(values: Floats) -> float:

@@ -9,10 +9,12 @@ from matplotlib.patheffects import withStroke
 
 from frahm.plotting.lines import (
     DETUNING_LABEL,
+    HEADROOM,
     KIND_NAMES,
     MODULATED_NAMES,
     MOST_LABELS,
     QUANTITY_LABELS,
+    beyond_the_top,
     envelopes,
     largest_finite,
     line_colour,
@@ -21,7 +23,7 @@ from frahm.plotting.lines import (
     special_marks,
     thinned,
 )
-from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK, UNSTABLE_DASHES, new_figure
+from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK, UNSTABLE_DASHES, decade_axis, new_figure
 from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
 
 if TYPE_CHECKING:
@@ -74,14 +76,22 @@ def response_figure(
         top = max(top, _draw_motion(axes, motion, quantity))
     if bare is not None and quantity == "pipe_peak":
         axes.plot(bare["detuning"].values, bare["pipe_peak"].values, ":", color=BARE, label="without absorber")
-    axes.set(xlabel=DETUNING_LABEL, ylabel=QUANTITY_LABELS[quantity], ylim=(0, 1.12 * top or 1.0))
+        beyond = beyond_the_top(bare, HEADROOM * top)
+        if beyond is not None:
+            axes.annotate(
+                beyond.text, (beyond.x, HEADROOM * top), (6, -3), textcoords="offset points", va="top", fontsize=8,
+                color=BARE, path_effects=[withStroke(linewidth=1.5, foreground="white")],
+            )  # fmt: skip
+    axes.set(xlabel=DETUNING_LABEL, ylabel=QUANTITY_LABELS[quantity], ylim=(0, HEADROOM * top or 1.0))
     figure.legend(loc="outside lower center", ncols=3)
     return figure
 
 
 def motion_figure(motion: MotionView) -> Figure:
     """Pipe and absorber in time and frequency: envelope of the whole run, last periods, spectrum of the tail."""
-    figure = new_figure(160, 150)
+    figure = new_figure(160, 125)
+    figure.set_layout_engine(None)  # the same for every motion: to arrange it anew takes as long as to draw it
+    figure.subplots_adjust(left=0.125, right=0.985, top=0.945, bottom=0.15, hspace=0.62)
     whole, last, lines = figure.subplots(3, 1)
     for name in reversed(motion.signals):
         color, style, width = _SIGNAL_LOOKS[name]
@@ -93,6 +103,7 @@ def motion_figure(motion: MotionView) -> Figure:
         lines.plot(*thinned(*motion.spectrum[name], 700), color=color, linestyle=style, linewidth=0.7)
     if motion.moves:
         lines.set_yscale("log")
+        decade_axis(lines.yaxis)
     lines.axvline(motion.frequency_hz, color=INK, linestyle=":", linewidth=0.8, label="excitation")
     whole.set(title=motion.title, xlabel="time [s], whole run", ylabel="envelope [m]")
     last.set(xlabel="time [s], last periods", ylabel="displacement [m]")
@@ -100,8 +111,9 @@ def motion_figure(motion: MotionView) -> Figure:
     lines.set_xlim(0, SHOWN_HARMONICS * motion.frequency_hz)
     for axes in (whole, last):
         axes.margins(x=0.01)
+    figure.align_ylabels()
     handles = [*whole.get_legend_handles_labels()[0], *lines.get_legend_handles_labels()[0]]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3)
+    figure.legend(handles=handles, loc="lower center", ncols=3)
     return figure
 
 

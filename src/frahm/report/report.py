@@ -82,6 +82,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         views=views[:_MOST_MOTIONS],
         more_motions=max(0, len(views) - _MOST_MOTIONS),
         plots=plots,
+        zoomed='"narrow":' in plots.get("response-pipe", ""),
         images={name: image_address(svg) for name, svg in images.items() if name in plots},
         plotly_js=Markup(plotly.offline.get_plotlyjs()),
         plotly_config=CONFIG,

@@ -19,6 +19,16 @@ _MARKS = {"pass": "✓ pass", "fail": "✗ fail", "unverified": "? unverified"}
 _GREEK = {"omega": "ω", "zeta": "ζ", "rho": "ρ", "sigma": "σ", "nu": "ν"}
 
 
+_SETTINGS = {
+    "slow_flow_form": "Form of the slow flow",
+    "harmonic_balance_residual": "Harmonic balance: residual below",
+    "integration_tolerance": "Integration: local error below this share of the motion",
+    "integration_periods": "Integration: excitation periods",
+    "samples_per_period": "Integration: samples in a period",
+    "periodic_below": "Periodic: Poincaré section within this share of its size",
+}
+
+
 class InputRow(NamedTuple):
     """One field of the case; the symbol is its letter and its index."""
 
@@ -132,7 +142,7 @@ def _percent(value: float | None) -> str:
 
 def special_point_rows(analysis: Analysis, method: str = "harmonic-balance") -> list[tuple[str, ...]]:
     """Label, kind, detuning, frequency in Hz, pipe peak, stroke, branch, status of every special point."""
-    from frahm.plotting.lines import special_marks
+    from frahm.plotting.lines import KIND_NAMES, special_marks
 
     name = {"harmonic-balance": "response", "slow-flow": "slow_flow"}[method]
     if name not in analysis.data:
@@ -141,7 +151,8 @@ def special_point_rows(analysis: Analysis, method: str = "harmonic-balance") -> 
     detached = {b["number"] for b in found.get("branches", []) if b["detached"]}
     return [
         (
-            mark.label, point["kind"], number(point["detuning"]), number(point["frequency"] / (2 * math.pi), 5),
+            mark.label, KIND_NAMES[point["kind"]], number(point["detuning"]),
+            number(point["frequency"] / (2 * math.pi), 5),
             number(point["pipe_peak"]), number(point["relative_peak"]),
             f"{point['branch']}{' (detached)' if point['branch'] in detached else ''}", point["status"],
         )
@@ -294,6 +305,16 @@ def manifold_rows(analysis: Analysis) -> list[tuple[str, str, str]]:
     return rows
 
 
+def provenance_rows(analysis: Analysis) -> list[tuple[str, str]]:
+    """Versions, seed and tolerances: name and value."""
+    found, settings = analysis.results["provenance"], analysis.case.analysis
+    rows = [("frahm", analysis.version), *found["versions"].items()]
+    rows += [("Seed of the sampled initial states", str(settings.seed)), ("Initial states", str(settings.samples))]
+    return rows + [
+        (_SETTINGS.get(name, name.replace("_", " ")), number(value)) for name, value in found["settings"].items()
+    ]
+
+
 def _symbol(symbol: str) -> tuple[str, str]:
     letter, _, index = symbol.partition("_")
     return _GREEK.get(letter, letter), index
@@ -304,7 +325,9 @@ def _unit(unit: str) -> str:
 
 
 def _value(value: Any) -> str:
-    if value == () or (isinstance(value, tuple) and isinstance(value[0], BaseModel)):
+    if value == ():
+        return "none"
+    if isinstance(value, tuple) and isinstance(value[0], BaseModel):
         return f"{len(value)} rows"
     if isinstance(value, tuple) and isinstance(value[0], tuple):
         pairs = "; ".join(" → ".join(number(entry) for entry in pair) for pair in value)

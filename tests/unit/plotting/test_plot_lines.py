@@ -1,8 +1,18 @@
 import numpy as np
 import pytest
+import xarray as xr
 
 import frahm
-from frahm.plotting.lines import Line, lines_by_name, response_lines, special_marks, stretches, thinned
+from frahm.plotting.lines import (
+    Line,
+    beyond_the_top,
+    lines_by_name,
+    response_lines,
+    special_marks,
+    stretches,
+    thinned,
+)
+from frahm.plotting.style import decade_label
 
 CURVE = frahm.frequency_response(
     frahm.load_case("jacket-pipe").with_absorber(xi2=0.0085), detuning=(-0.3, 0.3), method="slow-flow"
@@ -53,3 +63,20 @@ def test_thinning_keeps_the_extremes():
     assert few_x.size <= 500
     assert (few_y.max(), few_y.min()) == (5, -7)
     assert np.all(np.diff(few_x) > 0)
+
+
+def bare(peaks):
+    return xr.Dataset({"detuning": ("point", [-0.1, 0.0, 0.1, 0.2]), "pipe_peak": ("point", peaks)})
+
+
+def test_a_curve_that_leaves_the_figure_is_named_with_its_height():
+    assert beyond_the_top(bare([0.1, 0.2, 0.1, 0.1]), 0.3) is None
+    beyond = beyond_the_top(bare([0.1, 0.9, 0.4, 0.1]), 0.3)
+    assert beyond.x == 0.1
+    assert "0.9 m" in beyond.text
+    assert "without bound" in beyond_the_top(bare([0.1, np.inf, 0.2, 0.1]), 0.3).text
+
+
+@pytest.mark.parametrize(("value", "text"), [(1e-4, "10⁻⁴"), (1.0, "10⁰"), (100.0, "10²"), (2e-3, "0.002"), (0.0, "0")])
+def test_decades_are_labelled_in_plain_text(value, text):
+    assert decade_label(value) == text
