@@ -25,7 +25,7 @@ def design(
     force_margin: Annotated[
         float, typer.Option(help="Factor on the force up to which no detached curve may exist.")
     ] = 1.05,
-    stroke: Annotated[float | None, typer.Option(help="Largest stroke allowed [m].")] = None,
+    stroke: Annotated[float | None, typer.Option(help="Largest stroke allowed, in m.")] = None,
     samples: Annotated[int, typer.Option(help="Initial states per frequency in the verification.")] = 200,
     seed: Annotated[int, typer.Option(help="The same seed gives the same result.")] = 1,
     force: Annotated[bool, typer.Option("--force", help="Write even if the folder holds another case.")] = False,
