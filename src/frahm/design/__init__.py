@@ -2,6 +2,7 @@
 
 from frahm.design.absorber import DesignedAbsorber, with_design
 from frahm.design.designing import design_absorber, verified_designs
+from frahm.design.pareto import pareto_front
 from frahm.design.settings import DesignSettings
 from frahm.design.store import save_design
 from frahm.design.study import DesignStudy, Rival
@@ -12,6 +13,7 @@ __all__ = [
     "DesignedAbsorber",
     "Rival",
     "design_absorber",
+    "pareto_front",
     "save_design",
     "verified_designs",
     "with_design",

@@ -46,8 +46,11 @@ class DesignSpace:
 
     def designs(self, unit: Floats) -> Floats:
         """Designs (D, 4) in SI units at points (D, d) of the unit cube."""
-        values = self.lo + np.clip(unit, 0.0, 1.0) * (self.hi - self.lo)
-        found = np.zeros((len(unit), 4))
+        return self.of_values(self.lo + np.clip(unit, 0.0, 1.0) * (self.hi - self.lo))
+
+    def of_values(self, values: Floats) -> Floats:
+        """Designs (D, 4) in SI units of values (D, d) of the free parameters."""
+        found = np.zeros((len(values), 4))
         found[:, 0] = self.mass
         for at, column in enumerate(self.columns):
             found[:, column] = values[:, at] if column == LINEAR else np.exp(values[:, at])
