@@ -364,6 +364,12 @@ class _Designing:
             doubts += [f"With the margin on the force: {sentence}" for sentence in found.with_margin.unverified]
         if found.built is not None:
             doubts += [f"With the exact force of transverse springs: {sentence}" for sentence in found.built.unverified]
+        doubts += [
+            f"Table of frequency errors: {name} at {100 * (error - 1):+.3g} % is unverified."
+            for name, sure in found.sure.items()
+            for error, holds in zip(self.settings.errors, sure, strict=True)
+            if not holds
+        ]
         if interrupted:
             doubts.append("Interrupted: the comparison is not complete.")
         name = f"{self.case.name}-{best.name.replace(' ', '-')}"[:60]

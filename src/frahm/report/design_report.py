@@ -46,7 +46,7 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
     return environment.get_template("design.html.jinja").render(
         study=study,
         status="pass" if study.verified else "unverified",
-        headline="✓ verified over all attractors found" if study.verified else f"? {len(study.unverified)} unverified",
+        headline=headline(study),
         comparison=[comparison_row(rival) for rival in study.comparison],
         error_head=["Device", *(f"{100 * (r - 1):+.3g} %" if r != 1 else "0 %" for r in study.errors)],
         error_rows=error_rows(study),
@@ -60,6 +60,14 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         plots={},
         images=images,
     )  # fmt: skip
+
+
+def headline(study: DesignStudy) -> str:
+    """How far the study can be trusted, in a few words."""
+    if study.verified:
+        return "✓ verified over all attractors found"
+    best = "the chosen design is verified" if study.best.verified else "the chosen design is UNVERIFIED"
+    return f"? {len(study.unverified)} unverified; {best}"
 
 
 def comparison_row(rival: Rival) -> tuple[str, ...]:
