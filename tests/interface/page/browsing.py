@@ -81,6 +81,8 @@ class Visitor:
               x: Array.from(t.x || [], (v) => Number.isFinite(v) ? v : null),
               y: Array.from(t.y || [], (v) => Number.isFinite(v) ? v : null)}))
             .filter((t) => t.visible === true && t.x.length)"""
+        there = "(figure) => !!(document.querySelector('#' + figure + ' .js-plotly-plot') || {})._fullData"
+        self.page.wait_for_function(there, arg=figure)
         return self.page.evaluate(script, figure)
 
     def drawn(self, number):
