@@ -23,7 +23,7 @@ def test_the_springs_of_the_sheet_have_the_force_of_the_law_that_is_verified():
     y = np.linspace(-stroke, stroke, 41)
     exact = 2 * k * y * (1 - L / np.hypot(L, y))
     law = frahm.build_system(as_built(CASE, SINK, stroke)).elements[0].law
-    assert law.force(y) == pytest.approx(exact, rel=2e-5, abs=1e-12)
+    assert law.force(y) == pytest.approx(exact, rel=2e-4, abs=1e-12)
     assert law.damping == pytest.approx(247 * 0.05715)
 
 
@@ -52,3 +52,10 @@ def test_wires_have_the_cubic_stiffness():
     length, area = sheet.value("wire length L, each side"), sheet.value("wire cross-section")
     assert 2.06e11 * area / length**3 == pytest.approx(247 * 2922.3)
     assert sheet.value("wire stress range") == pytest.approx(2.06e11 * 0.0133**2 / (2 * length**2))
+
+
+def test_the_law_that_is_verified_stays_a_hardening_spring_beyond_the_stroke():
+    law = frahm.build_system(as_built(CASE, SINK, 0.0133)).elements[0].law
+    y = np.linspace(1e-4, 1.0, 400)
+    assert np.all(law.stiffness(y) > 0)
+    assert np.all(np.diff(law.stiffness(y)) > 0)
