@@ -76,5 +76,9 @@ def test_an_interrupted_design_gives_the_best_so_far_and_says_so(tmp_path, monke
     done = design(tmp_path, "--family", "tuned", "--samples", 4)
     assert done.exit_code == 130
     assert (tmp_path / "out" / "best.yaml").is_file()
+    shown = CliRunner().invoke(app, ["show", str(tmp_path / "out")])
+    assert shown.exit_code == 0
+    assert "tuned mass damper" in shown.output
+    assert "Interrupted" in shown.output
     assert "nterrupted" in (tmp_path / "out" / "summary.json").read_text(encoding="utf-8")
     assert "Traceback" not in done.output

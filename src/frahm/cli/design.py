@@ -82,3 +82,25 @@ def _conclude(study: DesignStudy, folder: Path) -> None:
         raise typer.Exit(ExitCode.INTERRUPTED)
     if not study.verified:
         raise typer.Exit(ExitCode.UNVERIFIED)
+
+
+def stored_design_text(folder: Path) -> str | None:
+    """What `frahm design` left in a folder, as text; None if the folder holds something else."""
+    import json
+
+    try:
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        if summary["schema"] != "frahm-design-1":
+            return None
+        found = summary["results"]["design"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    rows = [
+        f"  {row['name']:<18} {row['worst_pipe_peak']:.5g} m, {'verified' if row['verified'] else 'unverified'}"
+        for row in found["comparison"]
+    ]
+    lines = [f"{summary['case']['name']}: design of the family {found['family']}", "", found["verdict"]]
+    lines += ["", "Worst pipe peak of every device", *rows]
+    if summary["unverified"]:
+        lines += ["", "Unverified", *(f"  {sentence}" for sentence in summary["unverified"])]
+    return "\n".join(lines)

@@ -65,6 +65,12 @@ def report(
 
 def show(folder: FolderArgument) -> None:
     """Print what a folder of results says."""
+    from frahm.cli.design import stored_design_text
+
+    text = stored_design_text(folder)
+    if text is not None:
+        typer.echo(text)
+        return
     from frahm.analysis import load_analysis
     from frahm.cli.results import results_text
 
