@@ -65,13 +65,18 @@ def test_each_slider_draws_the_numbers_of_python(visit):
     visitor, case = visit().rest(), CASE
     assert shows(visitor, case)
     for name, change in CHANGES.items():
-        before = visitor.field(name).input_value()
+        before, last = visitor.field(name).input_value(), case
         visitor.slider(name).focus()
         for _ in range(3):
             visitor.page.keyboard.press("ArrowRight")
         expect(visitor.field(name)).not_to_have_value(before)
-        case = change(case, float(visitor.field(name).input_value()))
-        assert wait_until(lambda now=case: shows(visitor, now)), name
+        visitor.page.wait_for_timeout(500)  # until the field shows the last of the keys, too
+
+        def as_in_the_field(change=change, last=last, name=name):
+            return change(last, float(visitor.field(name).input_value()))
+
+        assert wait_until(lambda now=as_in_the_field: shows(visitor, now())), name
+        case = as_in_the_field()
     visitor.rest()
     curve = frahm.frequency_response(case, detuning=case.analysis.detuning)
     drawn = np.concatenate([points_of(visitor.lines(), "exact", dash) for dash in ("solid", "dash")])
