@@ -13,14 +13,14 @@ KINDS = ("periodic", "modulated", "unsettled")
 PERIODIC_BELOW = 1e-3
 STEADY_WITHIN = 0.3
 _SHORTEST = 80
-_HARDLY = 1e-2
+_HARDLY = 0.1
 
 
 def section_spread(history: TimeHistory) -> float:
     """Half range of the Poincare section over its largest state, the worse of displacement and velocity; 0 if periodic.
 
     Displacements and velocities of each coordinate are compared with the peak of that coordinate over the history, of a
-    coordinate that hardly moves with a hundredth of the largest: what is left there may be rounding.
+    coordinate that hardly moves with a tenth of the largest: what is left there may be rounding.
     """
     section = history.poincare()
     spread = 0.0
