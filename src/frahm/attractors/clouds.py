@@ -66,7 +66,7 @@ def looks_stationary(strobes: Floats) -> bool:
 
 
 def drift(strobe: Stroboscope, state: Floats) -> Floats | None:
-    """Strobes (K, 2n) of a motion spread over a long time, for beats that nearly fit into a few periods; None if lost."""
+    """Strobes (K, 2n) of a motion spread over a long time, for beats that nearly fit a few periods; None if lost."""
     found, states = [], state[None]
     for _ in range(_STRETCHES):
         seen = strobe.run(states, _STRETCH, strobes=_HIGHEST)
