@@ -10,22 +10,20 @@ from concurrent.futures import Executor
 
 from frahm.errors import ParameterError
 
-_ADDRESS = re.compile(r"([a-z]+://)?[^\s/]+:\d{1,5}")
+_ADDRESS = re.compile(r"([a-z]+://)?\S+[:/]\d{1,5}")
 _REACHED = 10.0  # seconds within which a scheduler answers
 _JOINED = 30.0  # seconds within which a worker has joined it
 _ALLOWED = "the address of a Dask scheduler that answers, such as tcp://127.0.0.1:8786"
 
 
 @contextlib.contextmanager
-def scheduler(address: str, *, reached: float = _REACHED, joined: float = _JOINED) -> Iterator[Executor]:
+def scheduler(address: str) -> Iterator[Executor]:
     """Give the executor of a Dask scheduler that is already running.
 
     Parameters
     ----------
     address : str
         Such as ``"tcp://127.0.0.1:8786"``.
-    reached, joined : float
-        Longest waits [s] for the scheduler and for its first worker.
 
     Raises
     ------
@@ -41,15 +39,15 @@ def scheduler(address: str, *, reached: float = _REACHED, joined: float = _JOINE
         raise ParameterError("scheduler", address, _ALLOWED)
     with _quiet():
         try:
-            client = Client(address, timeout=reached, set_as_default=False)
+            client = Client(address, timeout=_REACHED, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             hint = f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else 'no answer'}."
             raise ParameterError("scheduler", address, _ALLOWED, hint=hint) from None
     with contextlib.closing(client):
         try:
-            client.wait_for_workers(1, timeout=joined)
+            client.wait_for_workers(1, timeout=_JOINED)
         except TimeoutError:
-            hint = f"It answers, but no worker has joined it within {joined:g} s."
+            hint = f"It answers, but no worker has joined it within {_JOINED:g} s."
             raise ParameterError("scheduler", address, "a scheduler with workers", hint=hint) from None
         yield client.get_executor(pure=False)
 

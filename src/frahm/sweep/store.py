@@ -194,7 +194,7 @@ def open_store(path: Path) -> Store:
         for name, values in (*store.columns.items(), ("status", store.status), ("reason", store.reason)):
             values[...] = group[name][...].reshape(values.shape)
         store.reasons = Reasons.read(group.attrs["reasons"], store.reason)
-    except (OSError, KeyError, ValueError, TypeError) as error:
+    except Exception as error:  # the codecs raise what they like for bytes that are none of theirs
         hint = f"It is damaged: {type(error).__name__}: {error}."
         raise ParameterError("store", str(path), _ALLOWED, hint=hint) from None
     return store

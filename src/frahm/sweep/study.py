@@ -196,8 +196,8 @@ class Study(Section):
             try:
                 Point(self, self.size - 1).check()
             except ParameterError:
-                hint = f"The first point says: {first}."
-                raise refusal("axes and quantities that fit the case", path="axes", value=None, hint=hint) from None
+                allowed, hint = "axes and quantities that fit the case", f"The first point says: {first}."
+                raise refusal(allowed, path="axes", value=self.values_at(0), hint=hint) from None
 
     @field_serializer("case")
     def _case_as_data(self, case: Case) -> dict[str, Any]:

@@ -29,7 +29,8 @@ Progress = Callable[[str, int, int], None]
 _IN_FLIGHT = 256  # tasks submitted and not finished
 _TRIES = 2  # of a task whose worker was lost
 _LOST = 3  # tasks lost with nothing finished in between: the workers are gone
-_EVERY = 1.0  # seconds between two writings
+_LOOK = 1.0  # seconds between two looks around where nothing happens
+_EVERY = 0.25  # seconds between two writings, or more:
 _SHARE = 0.05  # of the time that may go into them
 
 
@@ -154,7 +155,7 @@ class _Filling:
         self.done = store.study.size - int(store.pending.size)
         self.lost: dict[str, int] = {}
         self.in_a_row = 0
-        self.written, self.pause = time.monotonic(), _EVERY
+        self.written, self.pause = time.monotonic(), 0.0
 
     def run(self, executor: Executor | None) -> dict[str, int]:
         """Compute all pending points; returns how many could not be, by the sentence that says why."""
@@ -173,7 +174,7 @@ class _Filling:
         try:
             while self.waiting or self.running:
                 self._submit(executor, stopped)
-                finished, _ = wait(self.running, timeout=_EVERY, return_when=FIRST_COMPLETED)
+                finished, _ = wait(self.running, timeout=_LOOK, return_when=FIRST_COMPLETED)
                 for future in finished:
                     self._take(future)
                 self._write_if_due()
