@@ -99,7 +99,7 @@ def wait_for(path, points, process):
     while finished_points(path) < points:
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < deadline
-        time.sleep(0.05)
+        time.sleep(0.2)
 
 
 def test_killed_interrupted_and_resumed_a_sweep_is_the_same(folder):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from frahm.attractors.attractor import KINDS
 from frahm.errors import Outcome, ParameterError
 from frahm.response import ResponseCurve, frequency_response, periodic_responses, slow_flow_map
 from frahm.sweep.points import Point
+from frahm.sweep.study import Study
 from frahm.sweep.variables import at_window
 
 _ROUGH = 1e-3  # residual of a response that is worth a word, as in the response curve
@@ -37,53 +37,99 @@ def computed(name: str, points: Sequence[Point]) -> list[Found]:
 
     A keyboard interrupt goes through, as does the one that a search for attractors answers with half a result.
     """
-    asked = points[0].study.asked[name]
-    if name == "slow_flow" and not at_window(points[0].study, asked):
-        groups = groupby(points, key=lambda point: [v for axis, v in point.values.items() if axis not in _INNER])
-        return [found for _, group in groups for found in _equilibria(list(group), asked)]
-    function = _ONE_BY_ONE[name, at_window(points[0].study, asked)]
+    study = points[0].study
+    asked = study.asked[name]
+    if is_closed_form(study, name):
+        numbers, failures = equilibria(study, np.array([point.index for point in points]))
+        return [
+            Found(failure=failures[row]) if row in failures else Found({key: v[row] for key, v in numbers.items()})
+            for row in range(len(points))
+        ]
+    function = _ONE_BY_ONE[name, at_window(study, asked)]
     return [_guarded(function, point, asked) for point in points]
+
+
+def is_closed_form(study: Study, name: str) -> bool:
+    """Whether a quantity is computed for many points at once."""
+    return name == "slow_flow" and not at_window(study, study.asked[name])
 
 
 def _guarded(function: Callable[[Point, Any], Found], point: Point, asked: Any) -> Found:
     try:
         return function(point, asked)
-    except ParameterError as error:
-        return Found(failure=str(error))
     except Exception as error:  # a sweep never dies: any failure of a point is a value
-        return Found(failure=f"{type(error).__name__}: {error}")
+        return Found(failure=_said(error))
 
 
-def _equilibria(points: list[Point], asked: Any) -> list[Found]:
-    """The slow flow at one detuning, for points that differ in what its map takes as arrays."""
-    try:
-        return _map(points, asked)
-    except ParameterError:
-        return [_guarded(lambda p, a: _map([p], a)[0], point, asked) for point in points]
+def _said(error: Exception) -> str:
+    return str(error) if isinstance(error, ParameterError) else f"{type(error).__name__}: {error}"
 
 
-def _map(points: list[Point], asked: Any) -> list[Found]:
-    first, axes = points[0], points[0].values
-    given: dict[str, Any] = {name: np.array([p.values[name] for p in points]) for name in _INNER if name in axes}
-    given.setdefault("detuning", np.full(len(points), first.place(asked)))
-    found = slow_flow_map(first.system, form=first.case.analysis.form, **given)
+def equilibria(study: Study, indices: np.ndarray) -> tuple[dict[str, np.ndarray], dict[int, str]]:
+    """The slow flow at one detuning, many points in one compiled call.
+
+    Parameters
+    ----------
+    study : Study
+    indices : ndarray of int, shape (points,)
+        Numbers of the points.
+
+    Returns
+    -------
+    numbers : dict
+        Arrays of shape (points,) or (points, 3); what they hold where a point failed means nothing.
+    failures : dict
+        Why a point failed, by its place among the points.
+    """
+    places = dict(zip(study.axes_given, np.unravel_index(indices, study.shape), strict=True))
+    values = {name: np.array(study.axes_given[name])[place] for name, place in places.items() if name in _INNER}
+    outer = [place for name, place in places.items() if name not in _INNER]
+    pipe, relative = np.full((indices.size, 3), np.nan), np.full((indices.size, 3), np.nan)
+    stability, failures = np.full((indices.size, 3), -1, dtype="i1"), {}
+    waiting = [np.flatnonzero(group) for group in _groups(outer, indices.size)]
+    while waiting:
+        rows = waiting.pop()
+        first = Point(study, int(indices[rows[0]]))
+        try:
+            found = _map(first, {name: column[rows] for name, column in values.items()}, rows.size)
+            pipe[rows], relative[rows], stability[rows] = found
+        except Exception as error:
+            if rows.size == 1:
+                failures[int(rows[0])] = _said(error)
+            else:  # one of them is to blame
+                waiting += np.array_split(rows, 2)
+    stable = np.where(stability == 0, pipe, np.nan)
+    numbers = {
+        "pipe_amplitude": pipe,
+        "relative_amplitude": relative,
+        "stability": stability,
+        "equilibria": np.count_nonzero(stability >= 0, axis=1),
+        "stable_equilibria": np.count_nonzero(stability == 0, axis=1),
+        "pipe_peak": np.fmax.reduce(pipe, axis=1),
+        "stable_pipe_peak": np.fmax.reduce(stable, axis=1),
+    }
+    return numbers, failures
+
+
+def _groups(outer: list[np.ndarray], points: int) -> Iterator[np.ndarray]:
+    """Which points are alike in all axes but those that a map takes as arrays."""
+    if not outer:
+        yield np.ones(points, dtype=bool)
+        return
+    _, group = np.unique(np.array(outer), axis=1, return_inverse=True)
+    for number in range(int(group.max()) + 1):
+        yield group.ravel() == number
+
+
+def _map(first: Point, axes: dict[str, Any], points: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Amplitudes [m] and stability of the equilibria at points that are like the first one but for the axes given."""
+    asked = first.study.quantities.slow_flow
+    axes.setdefault("detuning", np.full(points, first.place(asked)))
+    found = slow_flow_map(first.system, form=first.case.analysis.form, **axes)
     pipe, relative, stability = (
         found[name].values.reshape(-1, 3) for name in ("pipe_amplitude", "relative_amplitude", "stability")
     )
-    return [
-        Found(
-            {
-                "pipe_amplitude": pipe[i],
-                "relative_amplitude": relative[i],
-                "stability": stability[i],
-                "equilibria": int(np.count_nonzero(stability[i] >= 0)),
-                "stable_equilibria": int(np.count_nonzero(stability[i] == 0)),
-                "pipe_peak": _largest(pipe[i]),
-                "stable_pipe_peak": _largest(pipe[i][stability[i] == 0]),
-            }
-        )
-        for i in range(len(points))
-    ]
+    return pipe, relative, stability
 
 
 def _largest(values: Any) -> float:
