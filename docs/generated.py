@@ -13,7 +13,7 @@ from validation_page import validation
 
 ROOT = Path(__file__).resolve().parents[1]
 OUT = ROOT / "docs" / "_generated"
-SHORT_EXAMPLES = ("seed_paper", "unsafe_optimum")
+SHORT_EXAMPLES = ("seed_paper", "unsafe_optimum", "sweep_on_a_cluster")
 GREEK = {
     "kappa": "κ", "omega": "ω", "Omega": "Ω", "sigma": "σ", "rho": "ρ", "xi": "ξ", "zeta": "ζ", "gamma": "γ",
     "alpha": "α", "beta": "β", "theta": "θ", "nu": "ν",
@@ -168,7 +168,7 @@ _ROOMS = {
     "frahm.case": "The case", "frahm.systems": "Systems", "frahm.absorbers": "Force laws", "frahm.structure": "Beams",
     "frahm.loads": "Wind", "frahm.response": "Responses", "frahm.harmonic_balance": "Periodic responses",
     "frahm.time_integration": "Integration", "frahm.attractors": "Attractors", "frahm.assessment": "Fatigue",
-    "frahm.design": "Design", "frahm.errors": "Errors",
+    "frahm.design": "Design", "frahm.sweep": "Parameter studies", "frahm.errors": "Errors",
 }  # fmt: skip
 
 
@@ -187,7 +187,10 @@ def api() -> str:
         lines += [f"## {_ROOMS.get(room, room)}", ""]
         for name in rooms[room]:
             thing = getattr(frahm, name)
+            path = f"frahm.{name}"
+            if inspect.ismodule(thing):  # a room that is called like its verb
+                thing, path = getattr(thing, name), f"{room}.{name}"
             kind = "autofunction" if inspect.isroutine(thing) else "autoclass" if inspect.isclass(thing) else "autodata"
             options = ["   :members:"] if kind == "autoclass" else []
-            lines += ["```{eval-rst}", f".. {kind}:: frahm.{name}", *options, "```", ""]
+            lines += ["```{eval-rst}", f".. {kind}:: {path}", *options, "```", ""]
     return "\n".join(lines)
