@@ -241,6 +241,13 @@ def test_a_scheduler_without_workers(folder, monkeypatch):
     assert "no worker has joined it within 0.3 s" in message
 
 
+def test_processes_that_cannot_be(folder):
+    write_text(folder / "good.yaml", GOOD)
+    command = ("sweep", "good.yaml", "--store", "s", "--processes")
+    assert refused(*command, 0).startswith("processes: given 0; allowed: a whole number >= 1")
+    assert "nothing beside --scheduler" in refused(*command, 2, "--scheduler", "tcp://127.0.0.1:9")
+
+
 def test_without_dask_the_extra_is_named(folder, monkeypatch):
     import sys
 

@@ -55,10 +55,15 @@ def cases() -> None:
         typer.echo(f"{name:<{width}}  {load_case(name).title}")
 
 
-def schema() -> None:
-    """Print the JSON schema of a case file."""
+def schema(study: Annotated[bool, typer.Option("--study", help="Of a study instead.")] = False) -> None:
+    """Print the JSON schema of a case file, or of a study."""
     import json
 
+    if study:
+        from frahm.sweep import study_schema
+
+        typer.echo(json.dumps(study_schema(), indent=2))
+        return
     from frahm.case import case_schema
 
     typer.echo(json.dumps(case_schema(), indent=2))

@@ -22,6 +22,9 @@ def sweep(
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Of a Dask scheduler, such as tcp://127.0.0.1:8786.")
     ] = None,
+    processes: Annotated[
+        int | None, typer.Option(metavar="N", help="Processes on this machine; without it, threads.")
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the store where it stopped.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the store of another study, or of this one.")] = False,
 ) -> None:
@@ -39,31 +42,38 @@ def sweep(
             from frahm.sweep import sweep as compute
         loaded = load_study(study)
         try:
-            with warnings.catch_warnings(record=True) as caught, _workers(scheduler) as executor:
+            with warnings.catch_warnings(record=True) as caught, _workers(scheduler, processes) as executor:
                 warnings.simplefilter("always", SweepWarning)
                 compute(loaded, store=store, executor=executor, resume=resume, force=force, progress=progress)
         except KeyboardInterrupt:
-            _interrupted(study, store, scheduler)
+            _interrupted(study, store, scheduler, processes)
     sentences = [str(warning.message) for warning in caught if issubclass(warning.category, SweepWarning)]
     _conclude(summary_of(store), store, sentences)
 
 
-def _workers(scheduler: str | None) -> contextlib.AbstractContextManager[Executor | None]:
-    """The cluster asked for; without one the threads of this machine."""
+def _workers(
+    scheduler: str | None, processes: int | None
+) -> contextlib.AbstractContextManager[Executor] | contextlib.AbstractContextManager[None]:
+    """The cluster or the processes asked for; without either the threads of this machine."""
+    from frahm.errors import ParameterError
+    from frahm.sweep import processes as local
+
     if scheduler is None:
-        return contextlib.nullcontext()
+        return contextlib.nullcontext() if processes is None else local(processes)
+    if processes is not None:
+        raise ParameterError("--processes", processes, "nothing beside --scheduler, whose workers do the work")
     from frahm.sweep.cluster import scheduler as cluster
 
     return cluster(scheduler)
 
 
-def _interrupted(study: str, store: Path, scheduler: str | None) -> None:
+def _interrupted(study: str, store: Path, scheduler: str | None, processes: int | None) -> None:
     """Say how far it came and how to go on."""
     from frahm.sweep import is_sweep, summary_of
 
     if not is_sweep(store):
         raise KeyboardInterrupt
-    more = f" --scheduler {scheduler}" if scheduler else ""
+    more = f" --scheduler {scheduler}" if scheduler else f" --processes {processes}" if processes else ""
     typer.echo(f"frahm: interrupted. {summary_of(store).counts}.", err=True)
     typer.echo(f"frahm: go on with: frahm sweep {study} --store {store}{more} --resume", err=True)
     raise typer.Exit(ExitCode.INTERRUPTED)

@@ -6,9 +6,10 @@ The room is called like its verb: ``frahm.sweep(study, store=path)`` is `frahm.s
 import sys
 import types
 
+from frahm.sweep.local import processes
 from frahm.sweep.store import is_sweep, stored_study
 from frahm.sweep.study import Study
-from frahm.sweep.study_file import load_study, study_template
+from frahm.sweep.study_file import load_study, study_schema, study_template
 from frahm.sweep.summary import SweepSummary, summary_of, values_text
 from frahm.sweep.sweeping import SweepWarning, opened, sweep
 
@@ -19,7 +20,9 @@ __all__ = [
     "is_sweep",
     "load_study",
     "opened",
+    "processes",
     "stored_study",
+    "study_schema",
     "study_template",
     "summary_of",
     "sweep",

@@ -51,6 +51,12 @@ def load_study(source: Any) -> Study:
         return _from_data(data, str(source), lines)
 
 
+def study_schema() -> dict[str, Any]:
+    """JSON schema (draft 2020-12) of a study file."""
+    schema = Study.model_json_schema(mode="validation")
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "frahm study"}
+
+
 def study_template(name: str) -> str:
     """Commented YAML text of a small study to start from, under the name given."""
     text = (resources.files("frahm.sweep") / "template.yaml").read_text(encoding="utf-8")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.sweep import load_study, study_template
+from frahm.sweep import load_study, study_schema, study_template
 from frahm.sweep.batch import batch_size
 from frahm.sweep.store import chunk_shape
 
@@ -105,6 +105,17 @@ def test_chunks_hold_whole_runs_of_the_fastest_axes(shape):
     cut = max((i for i, (size, length) in enumerate(zip(chunks, shape, strict=True)) if size < length), default=0)
     assert set(chunks[:cut]) <= {1}
     assert chunks[cut + 1 :] == shape[cut + 1 :]
+
+
+def test_the_schema_lets_the_template_in_and_mistakes_out():
+    jsonschema = pytest.importorskip("jsonschema")
+    from frahm.case.yaml_text import read_yaml
+
+    check = jsonschema.Draft202012Validator(study_schema())
+    good = read_yaml(study_template("a"))[0]
+    assert list(check.iter_errors(good)) == []
+    for bad in ({"axes": {"kapa": [1]}}, {"axes": {"kappa": {"from": 1, "to": 2}}}, {"quantities": {"all": {}}}):
+        assert list(check.iter_errors({**good, **bad}))
 
 
 def test_the_template_is_a_study():

@@ -3,8 +3,7 @@
 import json
 import threading
 import warnings
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
-from multiprocessing import get_context
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ import pytest
 import xarray as xr
 
 import frahm
-from frahm.sweep import load_study, summary_of
+from frahm.sweep import load_study, processes, summary_of
 from frahm.sweep.batch import evaluated
 
 AXES = {"kappa": {"from": 60, "to": 400, "count": 3, "spacing": "log"}, "xi2": [0.006, 0.02]}
@@ -91,8 +90,8 @@ def test_threads_and_batches_leave_the_very_same_files(reference, tmp_path, work
 
 
 def test_processes_leave_the_very_same_files(reference, tmp_path):
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as processes:
-        frahm.sweep(STUDY, store=tmp_path / "s", executor=processes, batch=2)
+    with processes(1) as executor:
+        frahm.sweep(STUDY, store=tmp_path / "s", executor=executor, batch=2)
     assert files_of(tmp_path / "s") == files_of(reference)
 
 
