@@ -29,6 +29,7 @@ Progress = Callable[[str, int, int], None]
 _IN_FLIGHT = 256  # tasks submitted and not finished
 _TRIES = 2  # of a task whose worker was lost
 _LOST = 3  # tasks lost with nothing finished in between: the workers are gone
+_GRACE = 10.0  # seconds that tasks in other processes may take to end after an interruption
 _LOOK = 1.0  # seconds between two looks around where nothing happens
 _EVERY = 0.25  # seconds between two writings, or more:
 _SHARE = 0.05  # of the time that may go into them
@@ -236,12 +237,10 @@ class _Filling:
         """Take back what was not begun, and keep what is finished; own threads end with the point they are at."""
         if stopped is not None:
             stopped.set()
-        for future in self.running:
-            future.cancel()
-        if stopped is not None:
-            wait([future for future in self.running if not future.cancelled()])
-        for future in self.running:
-            if future.done() and not future.cancelled() and future.exception() is None:
+        begun = [future for future in self.running if not future.cancel()]
+        finished, _ = wait(begun, timeout=_GRACE if stopped is None else None)
+        for future in finished:
+            if future.exception() is None:
                 self.store.put(future.result())
 
 
