@@ -212,7 +212,8 @@ def test_a_store_somebody_writes_to_is_left_alone(finished):
 
     pytest.importorskip("fcntl")
     with only_writer(Path("s")):
-        assert "Another sweep is writing to it" in refused("sweep", "good.yaml", "--store", "s", "--resume")
+        for how in ("--resume", "--force"):
+            assert "Another sweep is writing to it" in refused("sweep", "good.yaml", "--store", "s", how)
 
 
 def test_a_store_that_cannot_be_written_is_named(folder):

@@ -184,10 +184,8 @@ def create_store(path: Path, study: Study) -> Store:
 
 
 def open_store(path: Path) -> Store:
-    """The store of a sweep, to go on with it."""
+    """The store of a sweep, all of it in memory; nothing on disk is touched."""
     study = stored_study(path)
-    for left in path.rglob("*.partial"):  # of a writer that was killed
-        left.unlink(missing_ok=True)
     store = _blank(path, study)
     try:
         group = _group(path)
@@ -198,6 +196,13 @@ def open_store(path: Path) -> Store:
         hint = f"It is damaged: {type(error).__name__}: {error}."
         raise ParameterError("store", str(path), _ALLOWED, hint=hint) from None
     return store
+
+
+def resumed_store(path: Path) -> Store:
+    """The store of a sweep, to go on with it; what a writer that was killed left half done is removed."""
+    for left in path.rglob("*.partial"):
+        left.unlink(missing_ok=True)
+    return open_store(path)
 
 
 @contextlib.contextmanager

@@ -17,7 +17,7 @@ import numpy as np
 from frahm import __version__
 from frahm.errors import ParameterError, check_count
 from frahm.sweep.batch import Batch, OtherVersionError, batch_size, evaluated
-from frahm.sweep.store import Store, create_store, is_sweep, only_writer, open_store, stored_study, stored_version
+from frahm.sweep.store import Store, create_store, is_sweep, only_writer, resumed_store, stored_study, stored_version
 from frahm.sweep.study import Study
 from frahm.sweep.study_file import load_study
 from frahm.sweep.summary import SweepSummary, summary_of
@@ -93,12 +93,10 @@ def sweep(
         raise ParameterError("executor", executor, "a concurrent.futures.Executor, or None for threads")
     path = Path(store)
     points = batch_size(study) if batch is None else check_count("batch", batch)
-    filled = _store_for(study, path, resume=resume, force=force)
+    fresh = _claimed(study, path, resume=resume, force=force)
     report = progress or (lambda title, done, total: None)
     with only_writer(path):
-        if resume:
-            filled = open_store(path)  # again, now that nobody else writes
-        lost = _Filling(filled, points, report).run(executor)
+        lost = _Filling(fresh or resumed_store(path), points, report).run(executor)
     summary = summary_of(path)
     for sentence in _grouped(summary, lost):
         warnings.warn(sentence, SweepWarning, stacklevel=2)
@@ -112,23 +110,26 @@ def opened(path: str | os.PathLike[str]) -> xr.Dataset:
     return xr.open_zarr(path, chunks=None)
 
 
-def _store_for(study: Study, path: Path, *, resume: bool, force: bool) -> Store:
-    """The store to fill: a new one, or one to go on with."""
+def _claimed(study: Study, path: Path, *, resume: bool, force: bool) -> Store | None:
+    """A new store where there is none or one may be replaced; None if the one that is there is to be gone on with."""
     if path.exists() and not is_sweep(path):
         if not path.is_dir():
             raise ParameterError("store", str(path), "a folder", hint="It is a file.")
         if any(path.iterdir()):
             raise ParameterError("store", str(path), "a new folder, or a store of this study", hint=_FOREIGN)
         path.rmdir()
-    if not path.exists() or (force and not (resume and _same(study, path))):
+    if not path.exists():
         return create_store(path, study)
+    if force and not (resume and _same(study, path)):
+        with only_writer(path):
+            return create_store(path, study)
     if not _same(study, path):
         hint = f"It holds {_described(study, path)}. Choose another folder, or replace it with --force (force=True)."
         raise ParameterError("store", str(path), "a new folder, or a store of this study", hint=hint)
     if not resume:
         hint = "It holds this study; go on with --resume (resume=True), or begin anew with --force (force=True)."
         raise ParameterError("store", str(path), "a new folder", hint=hint)
-    return open_store(path)
+    return None
 
 
 _FOREIGN = "It holds other files, which a sweep never touches."

@@ -1,5 +1,6 @@
 """The verb: what is in a store, which executor or batch size made it, and what stops it."""
 
+import inspect
 import json
 import threading
 import warnings
@@ -104,7 +105,8 @@ def test_the_default_is_threads(reference, tmp_path):
 def test_the_room_is_called_like_its_verb(tmp_path):
     import frahm.sweep as room
 
-    assert room is frahm.sweep
+    assert room is frahm.sweep is frahm.__getattr__("sweep")  # imported before or on first use
+    assert "executor" in inspect.signature(frahm.sweep).parameters
     assert room(CHEAP, store=tmp_path / "s").sizes["detuning"] == 4
 
 
@@ -223,6 +225,17 @@ def test_an_interruption_keeps_what_is_finished(tmp_path):
     frahm.sweep(CHEAP, store=tmp_path / "t", executor=Inline())
     assert np.all(resumed.status == 1)
     assert files_of(tmp_path / "s") == files_of(tmp_path / "t")
+
+
+def test_a_look_leaves_alone_what_a_writer_is_at_and_resumption_cleans_up(tmp_path):
+    frahm.sweep(CHEAP, store=tmp_path / "s", executor=Inline())
+    before = files_of(tmp_path / "s")
+    half = tmp_path / "s" / "status" / "c" / "0.0123456789abcdef.partial"
+    half.write_bytes(b"half")
+    assert summary_of(tmp_path / "s").good
+    assert half.exists()
+    frahm.sweep(CHEAP, store=tmp_path / "s", resume=True)
+    assert files_of(tmp_path / "s") == before
 
 
 def test_reasons_are_the_same_after_an_interruption_in_another_order(tmp_path):
