@@ -24,7 +24,8 @@ _SUBSCRIPTS, _POWERS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈�
 def write_pages() -> None:
     """Write every generated page; a file that would not change is left alone."""
     OUT.mkdir(exist_ok=True)
-    pages = {"nomenclature": nomenclature, "results": results, "misprints": misprints, "validation": validation}
+    pages = {"nomenclature": nomenclature, "results": results, "misprints": misprints, "validation": validation,
+             "sweep_variables": sweep_variables}  # fmt: skip
     for name, page in {**pages, "api": api}.items():
         _keep(OUT / f"{name}.md", page())
     for name in SHORT_EXAMPLES:
@@ -136,6 +137,31 @@ def results() -> str:
                  _code(", ".join(map(str, data[name].dims))))
                 for name in data.variables
             ],
+        )  # fmt: skip
+    return "\n".join(lines)
+
+
+def sweep_variables() -> str:
+    """Every variable a sweep can store, quantity by quantity."""
+    import frahm
+    from frahm.sweep.variables import variables_of_quantity
+
+    case = frahm.load_case("jacket-pipe-elastic")
+    lines = []
+    for title, name, place in (
+        ("`slow_flow` over a window", "slow_flow", "window"), ("`slow_flow` at a detuning", "slow_flow", 0.0),
+        ("`response` over a window", "response", "window"), ("`response` at a detuning", "response", 0.0),
+        ("`attractors` over a window", "attractors", "window"), ("`attractors` at a detuning", "attractors", 0.0),
+        ("`fatigue`", "fatigue", None),
+    ):  # fmt: skip
+        settings = {} if place is None else {"detuning": place}
+        start = "jacket-pipe" if name == "slow_flow" else case
+        study = frahm.load_study({"case": start, "axes": {"pipe_damping": [0.01]}, "quantities": {name: settings}})
+        lines += [f"**{title}**", ""]
+        lines += _table(
+            ("variable", "unit", "what it is"),
+            [(_code(v.name), _code(v.units), v.long_name + (f" ({v.codes})" if v.codes else ""))
+             for v in variables_of_quantity(study, name)],
         )  # fmt: skip
     return "\n".join(lines)
 
