@@ -26,7 +26,7 @@ _COSTS = {
     ("slow_flow", False): 2e-5, ("slow_flow", True): 3e-3, ("response", False): 0.03, ("response", True): 0.03,
     ("attractors", False): 0.5, ("attractors", True): 10.0, ("fatigue", False): 30.0,
 }  # fmt: skip
-_TASK = 1.5  # seconds of a task
+_TASK, _LEAST = 1.5, 0.05  # seconds of a task; of a small study, too, enough to outweigh its overhead of a millisecond
 _MOST = 20_000
 _FEWEST_TASKS = 16
 
@@ -58,9 +58,10 @@ class Batch:
 
 
 def batch_size(study: Study) -> int:
-    """Number of points of a task: about a second of work, and at least some tasks, so that progress can be seen."""
+    """Number of points of a task: about a second of work; less in small studies, so that progress can be seen."""
     cost = sum(_COSTS[name, at_window(study, asked)] for name, asked in study.asked.items())
-    return max(1, min(int(_TASK / cost), _MOST, -(-study.size // _FEWEST_TASKS)))
+    share = max(-(-study.size // _FEWEST_TASKS), int(_LEAST / cost))
+    return max(1, min(int(_TASK / cost), _MOST, share))
 
 
 def evaluated(text: str, version: str, indices: Sequence[int], stopped: Event | None = None) -> Batch:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -192,8 +191,3 @@ def _written_here(value: Mapping[Any, Any]) -> Case:
 def is_window(place: Any) -> bool:
     """Whether a place is a range of detuning."""
     return place == WINDOW or isinstance(place, tuple)
-
-
-def finite(value: float) -> float:
-    """Return the value, NaN where it is not finite."""
-    return value if math.isfinite(value) else math.nan
