@@ -13,7 +13,7 @@ from validation_page import validation
 
 ROOT = Path(__file__).resolve().parents[1]
 OUT = ROOT / "docs" / "_generated"
-SHORT_EXAMPLES = ("seed_paper", "unsafe_optimum")
+SHORT_EXAMPLES = ("seed_paper", "unsafe_optimum", "sweep_on_a_cluster")
 GREEK = {
     "kappa": "κ", "omega": "ω", "Omega": "Ω", "sigma": "σ", "rho": "ρ", "xi": "ξ", "zeta": "ζ", "gamma": "γ",
     "alpha": "α", "beta": "β", "theta": "θ", "nu": "ν",
@@ -24,7 +24,8 @@ _SUBSCRIPTS, _POWERS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈�
 def write_pages() -> None:
     """Write every generated page; a file that would not change is left alone."""
     OUT.mkdir(exist_ok=True)
-    pages = {"nomenclature": nomenclature, "results": results, "misprints": misprints, "validation": validation}
+    pages = {"nomenclature": nomenclature, "results": results, "misprints": misprints, "validation": validation,
+             "sweep_variables": sweep_variables}  # fmt: skip
     for name, page in {**pages, "api": api}.items():
         _keep(OUT / f"{name}.md", page())
     for name in SHORT_EXAMPLES:
@@ -140,6 +141,31 @@ def results() -> str:
     return "\n".join(lines)
 
 
+def sweep_variables() -> str:
+    """Every variable a sweep can store, quantity by quantity."""
+    import frahm
+    from frahm.sweep.variables import variables_of_quantity
+
+    case = frahm.load_case("jacket-pipe-elastic")
+    lines = []
+    for title, name, place in (
+        ("`slow_flow` over a window", "slow_flow", "window"), ("`slow_flow` at a detuning", "slow_flow", 0.0),
+        ("`response` over a window", "response", "window"), ("`response` at a detuning", "response", 0.0),
+        ("`attractors` over a window", "attractors", "window"), ("`attractors` at a detuning", "attractors", 0.0),
+        ("`fatigue`", "fatigue", None),
+    ):  # fmt: skip
+        settings = {} if place is None else {"detuning": place}
+        start = "jacket-pipe" if name == "slow_flow" else case
+        study = frahm.load_study({"case": start, "axes": {"pipe_damping": [0.01]}, "quantities": {name: settings}})
+        lines += [f"**{title}**", ""]
+        lines += _table(
+            ("variable", "unit", "what it is"),
+            [(_code(v.name), _code(v.units), v.long_name + (f" ({v.codes})" if v.codes else ""))
+             for v in variables_of_quantity(study, name)],
+        )  # fmt: skip
+    return "\n".join(lines)
+
+
 # --- misprints ------------------------------------------------------------------------------------------------------
 
 
@@ -168,7 +194,7 @@ _ROOMS = {
     "frahm.case": "The case", "frahm.systems": "Systems", "frahm.absorbers": "Force laws", "frahm.structure": "Beams",
     "frahm.loads": "Wind", "frahm.response": "Responses", "frahm.harmonic_balance": "Periodic responses",
     "frahm.time_integration": "Integration", "frahm.attractors": "Attractors", "frahm.assessment": "Fatigue",
-    "frahm.design": "Design", "frahm.errors": "Errors",
+    "frahm.design": "Design", "frahm.sweep": "Parameter studies", "frahm.errors": "Errors",
 }  # fmt: skip
 
 
@@ -187,7 +213,10 @@ def api() -> str:
         lines += [f"## {_ROOMS.get(room, room)}", ""]
         for name in rooms[room]:
             thing = getattr(frahm, name)
+            path = f"frahm.{name}"
+            if inspect.ismodule(thing):  # a room that is called like its verb
+                thing, path = getattr(thing, name), f"{room}.{name}"
             kind = "autofunction" if inspect.isroutine(thing) else "autoclass" if inspect.isclass(thing) else "autodata"
             options = ["   :members:"] if kind == "autoclass" else []
-            lines += ["```{eval-rst}", f".. {kind}:: frahm.{name}", *options, "```", ""]
+            lines += ["```{eval-rst}", f".. {kind}:: {path}", *options, "```", ""]
     return "\n".join(lines)

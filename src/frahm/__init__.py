@@ -61,6 +61,10 @@ _PUBLIC = {
     "DesignSettings": "frahm.design",
     "DesignStudy": "frahm.design",
     "DesignedAbsorber": "frahm.design",
+    "sweep": "frahm.sweep",
+    "Study": "frahm.sweep",
+    "SweepWarning": "frahm.sweep",
+    "load_study": "frahm.sweep",
     "read_data": "frahm.exchange",
     "read_table": "frahm.exchange",
     "read_time_series": "frahm.exchange",
@@ -76,7 +80,9 @@ def __getattr__(name: str) -> Any:
         room = _PUBLIC[name]
     except KeyError:
         raise AttributeError(f"module 'frahm' has no attribute {name!r}") from None
-    value = getattr(importlib.import_module(room), name)
+    module = importlib.import_module(room)
+    # A room that is called like its verb can itself be called: `import frahm.sweep` leaves that very attribute.
+    value = module if room == f"{__name__}.{name}" else getattr(module, name)
     globals()[name] = value
     return value
 

@@ -9,6 +9,8 @@ from pathlib import Path
 import matplotlib as mpl
 import pytest
 
+import frahm
+
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
 SPECIAL = re.compile(r"(saddle-node|neimark-sacker) +(?:sigma|at) +(-?[\d.]+)")
@@ -43,6 +45,20 @@ def test_the_optimum_that_is_not_safe(capsys, monkeypatch):
     peaks = {key: float(peak) for key, peak in re.findall(r"at ([\d.]+): pipe peak ([\d.]+)", said)}
     assert peaks["0.97"] == pytest.approx(31.4, abs=0.05)
     assert peaks["0.9729"] == pytest.approx(52.0, abs=1.0)
+
+
+def test_a_sweep_on_a_cluster(capsys, monkeypatch, tmp_path):
+    said = output_of("sweep_on_a_cluster", capsys, monkeypatch, tmp_path, 5)
+    assert "25 points, every branch followed and every special point located at 25" in said
+    peak, kappa, xi2 = map(float, re.search(r"others: ([\d.]+) m at kappa ([\d.]+), xi2 ([\d.]+)", said).groups())
+    curve = frahm.frequency_response(
+        frahm.load_case("jacket-pipe").with_absorber(kappa=kappa, xi2=xi2), detuning=(-0.3, 0.3)
+    )
+    assert curve.pipe_peak.max() == pytest.approx(peak, abs=1e-4)
+    assert (curve.detached, bool(curve.stable.all())) == ((False,), True)
+    worst = re.search(r"largest of all lasting motions there: ([\d.]+) m, periodic, verified", said)
+    assert float(worst[1]) == pytest.approx(peak, abs=1e-4)
+    assert (tmp_path / "sweep_on_a_cluster.png").stat().st_size > 10_000
 
 
 @pytest.mark.parametrize("name", ["elastic_fatigue", "design_a_sink"])

@@ -56,6 +56,11 @@ def files_beside(path: Path) -> Iterator[None]:
         _folder.reset(token)
 
 
+def beside(name: str | Path) -> Path:
+    """Path of a file named in the file that is being read."""
+    return _folder.get() / name
+
+
 def csv_names(name: str) -> list[str]:
     """Names of the columns of a CSV file, without their units; to be called by validators."""
     lines = _lines(name)
@@ -100,7 +105,7 @@ def _separator(head: str) -> str:
 def _lines(name: str) -> list[tuple[int, str]]:
     """Lines with something on them, and their numbers."""
     try:
-        with (_folder.get() / name).open("rb") as stream:
+        with beside(name).open("rb") as stream:
             raw = stream.read(_LARGEST + 1)
         if len(raw) > _LARGEST:
             raise refusal(f"a CSV file of at most {_LARGEST // 2**20} MB")

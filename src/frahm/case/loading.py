@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -13,16 +13,12 @@ from pydantic import ValidationError
 
 from frahm.case.case import Case
 from frahm.case.csv_text import files_beside
+from frahm.case.documents import LARGEST, READERS, check_mapping, document_data, document_text, place
 from frahm.case.problems import parameter_error
-from frahm.case.toml_text import read_toml
-from frahm.case.yaml_text import TextError, read_yaml, yaml_text
-from frahm.errors import ParameterError, nearest
+from frahm.case.yaml_text import read_yaml, yaml_text
+from frahm.errors import ParameterError
 
-_LARGEST = 256 * 1024
 _TEMPLATE = "jacket-pipe"
-_READERS: dict[str, Callable[[str], tuple[Any, dict[str, int]]]] = {
-    ".yaml": read_yaml, ".yml": read_yaml, ".toml": read_toml,
-}  # fmt: skip
 _SOURCES = "the name of a built-in case ({}), or a .yaml, .yml or .toml file"
 
 
@@ -95,89 +91,28 @@ def case_from_text(text: str, name: str) -> Case:
     ParameterError
         As `load_case`, with `name` as the file.
     """
-    if Path(name).suffix.lower() not in _READERS:
+    if Path(name).suffix.lower() not in READERS:
         raise ParameterError("case", name, _sources(), hint=f"The ending {Path(name).suffix!r} is not known.")
-    if len(text.encode()) > _LARGEST:
-        raise ParameterError("case", name, f"a case file of at most {_LARGEST // 1024} kB")
+    if len(text.encode()) > LARGEST:
+        raise ParameterError("case", name, f"a case file of at most {LARGEST // 1024} kB")
     return _from_text(text, name)
 
 
 def _from_file(source: str | os.PathLike[str]) -> Case:
-    return _from_text(_text(source), source)
+    return _from_text(document_text(source, "case", _sources(), builtin_names()), source)
 
 
 def _from_text(text: str, source: str | os.PathLike[str]) -> Case:
-    try:
-        data, lines = _READERS[Path(source).suffix.lower()](text)
-    except TextError as error:
-        where = f"{source}:{error.line}" if error.line else str(source)
-        raise ParameterError("case", Path(source).name, "a case file", where=where, hint=_sentence(error)) from None
-    if data is None or data == {}:
-        raise ParameterError("case", "an empty file", "a file with at least pipe and wind", where=str(source))
+    data, lines = document_data(text, source, "case", "pipe and wind")
     with files_beside(Path(source)):
         return _from_data(data, str(source), lines)
 
 
-def _sentence(error: TextError) -> str:
-    text = str(error).rstrip(".")
-    return text[0].upper() + text[1:] + "."
-
-
-def _text(source: str | os.PathLike[str]) -> str:
-    """Text of a case file, or the error that says why there is none."""
-    path, refuse = Path(source), functools.partial(ParameterError, "case", str(source))
-    try:
-        if not str(source) or not path.exists():
-            raise _no_such_file(str(source))
-        if path.is_dir():
-            raise refuse(_sources(), hint="This is a directory.")
-        if not path.is_file():
-            raise refuse(_sources(), hint="This is not a regular file.")
-        if path.suffix.lower() not in _READERS:
-            raise refuse(_sources(), hint=f"The ending {path.suffix!r} is not known.")
-        with path.open("rb") as stream:
-            raw = stream.read(_LARGEST + 1)
-    except OSError as error:
-        raise refuse(_sources(), hint=f"{error.strerror or error}.") from None
-    except ValueError as error:
-        raise error if isinstance(error, ParameterError) else refuse(_sources(), hint=f"{error}.") from None
-    if len(raw) > _LARGEST:
-        raise refuse(f"a case file of at most {_LARGEST // 1024} kB", hint="This file is larger.")
-    try:
-        if b"\0" in raw:
-            raise ValueError
-        return raw.decode("utf-8-sig")
-    except ValueError:
-        raise refuse("a text file in UTF-8", hint="This file is not text in UTF-8.") from None
-
-
-def _no_such_file(source: str) -> ParameterError:
-    near = nearest(Path(source).stem, builtin_names())
-    hint = f"Did you mean {near!r}?" if near else None
-    if near is None and Path(source).suffix:
-        hint = "There is no such file."
-    return ParameterError("case", source, _sources(), hint=hint)
-
-
 def _from_data(data: Any, source: str | None = None, lines: Mapping[str, int] | None = None) -> Case:
-    if not isinstance(data, dict):
-        allowed = "a mapping with the sections pipe, wind, absorbers, climate, fatigue, design, analysis"
-        raise ParameterError("case", data, allowed, where=source)
-    odd = next((key for key in data if not isinstance(key, str)), None)
-    if odd is not None:
-        raise ParameterError("case", odd, "names as text", where=source)
+    check_mapping(data, "case", "pipe, wind, absorbers, climate, fatigue, design, analysis", source)
     try:
         return Case(**data)
     except ParameterError as error:
         if source is None or not isinstance(error.__cause__, ValidationError):
             raise error from None
-        raise parameter_error(error.__cause__, Case, functools.partial(_place, source, lines or {})) from None
-
-
-def _place(source: str, lines: Mapping[str, int], path: str) -> str:
-    """File and line of a field; for one that is missing, of the section it belongs to."""
-    while path and path not in lines:
-        cut = max(path.rfind("."), path.rfind("["), 0)
-        path = path[:cut]
-    line = lines.get(path)
-    return f"{source}:{line}" if line else source
+        raise parameter_error(error.__cause__, Case, functools.partial(place, source, lines or {})) from None

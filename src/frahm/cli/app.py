@@ -12,6 +12,7 @@ from frahm.cli.design import design
 from frahm.cli.guarded import GuardedGroup
 from frahm.cli.page import page
 from frahm.cli.reproduce import reproduce
+from frahm.cli.sweep import sweep
 
 app = typer.Typer(
     name="frahm",
@@ -34,6 +35,7 @@ for command in (
     run.show,
     run.warmup,
     design,
+    sweep,
     reproduce,
 ):
     app.command()(command)

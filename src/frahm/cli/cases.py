@@ -19,11 +19,13 @@ def check(case: CaseArgument) -> None:
 
 
 def new(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="Case file to write, ending in .yaml or .yml.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="File to write, ending in .yaml or .yml.")],
+    study: Annotated[
+        bool, typer.Option("--study", help="Write a small study for frahm sweep; it runs within a minute.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
 ) -> None:
-    """Write a commented case file to start from."""
-    from frahm.case import template_text
+    """Write a commented case file, or a study, to start from."""
     from frahm.errors import ParameterError
     from frahm.files import write_text
 
@@ -32,6 +34,14 @@ def new(
     if file.exists() and (file.is_dir() or not force):
         hint = "It is a directory." if file.is_dir() else "It exists; --force replaces it."
         raise ParameterError("FILE", str(file), "a file that does not exist yet", hint=hint)
+    if study:
+        from frahm.sweep.study_file import study_template
+
+        write_text(file, study_template(file.stem))
+        typer.echo(f"{file} written. Edit it, then: frahm sweep {file} --store {file.with_suffix('.zarr')}")
+        return
+    from frahm.case import template_text
+
     write_text(file, template_text(file.stem))
     typer.echo(f"{file} written. Edit it, then: frahm check {file}")
 
@@ -45,10 +55,15 @@ def cases() -> None:
         typer.echo(f"{name:<{width}}  {load_case(name).title}")
 
 
-def schema() -> None:
-    """Print the JSON schema of a case file."""
+def schema(study: Annotated[bool, typer.Option("--study", help="Of a study instead.")] = False) -> None:
+    """Print the JSON schema of a case file, or of a study."""
     import json
 
+    if study:
+        from frahm.sweep import study_schema
+
+        typer.echo(json.dumps(study_schema(), indent=2))
+        return
     from frahm.case import case_schema
 
     typer.echo(json.dumps(case_schema(), indent=2))

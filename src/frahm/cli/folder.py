@@ -63,6 +63,15 @@ def holds_case(folder: Path, case: Case) -> bool:
         return False
 
 
+def holds_sweep(folder: Path) -> bool:
+    """Whether `frahm sweep` wrote the folder; quick, nothing heavy is imported for it."""
+    try:
+        attributes = json.loads((folder / "zarr.json").read_text(encoding="utf-8"))["attributes"]
+        return str(attributes["schema"]).startswith("frahm-sweep-")
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
 def holds_design(folder: Path) -> bool:
     """Whether `frahm design` wrote the folder."""
     from frahm.design.store import SCHEMA

@@ -64,10 +64,11 @@ def report(
 
 
 def show(folder: FolderArgument) -> None:
-    """Print what a folder of results says."""
+    """Print what a folder of results, or the store of a sweep, says."""
     from frahm.cli.design import stored_design_text
+    from frahm.cli.sweep import stored_sweep_text
 
-    text = stored_design_text(folder)
+    text = stored_design_text(folder) or stored_sweep_text(folder)
     if text is not None:
         typer.echo(text)
         return

@@ -1,0 +1,39 @@
+"""Room `sweep`: a study of many cases as one labelled store; local by default, the same on a cluster; resumable.
+
+The room is called like its verb: ``frahm.sweep(study, store=path)`` is `frahm.sweep.sweep`.
+"""
+
+import sys
+import types
+
+from frahm.sweep.local import processes
+from frahm.sweep.store import is_sweep, stored_study
+from frahm.sweep.study import Study
+from frahm.sweep.study_file import load_study, study_schema, study_template
+from frahm.sweep.summary import SweepSummary, summary_of, values_text
+from frahm.sweep.sweeping import SweepWarning, opened, sweep
+
+__all__ = [
+    "Study",
+    "SweepSummary",
+    "SweepWarning",
+    "is_sweep",
+    "load_study",
+    "opened",
+    "processes",
+    "stored_study",
+    "study_schema",
+    "study_template",
+    "summary_of",
+    "sweep",
+    "values_text",
+]
+
+
+class _Room(types.ModuleType):
+    """A module that can be called: the public name `frahm.sweep` and this folder are the same attribute of frahm."""
+
+    __call__ = staticmethod(sweep)
+
+
+sys.modules[__name__].__class__ = _Room
