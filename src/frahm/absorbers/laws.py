@@ -124,6 +124,10 @@ class Law(ABC):
         """The law with another damping [N s/m]."""
         return self._changed(damping=check_number("damping", value, unit="N s/m"))
 
+    @abstractmethod
+    def scaled(self, spring: float, damper: float) -> Law:
+        """The law with its whole spring, linear part included, and its damper times a factor; stops stay."""
+
     def with_weight(self, value: float) -> Self:
         """The law with another weight [N]."""
         return self._changed(weight=check_number("weight", value, unit="N"))
@@ -234,6 +238,10 @@ class Polynomial(Law):
         """The law with c_2, c_3, ... scaled so that c_3 is `value` [N/m^3]."""
         scale = value / self.cubic_stiffness
         return self._changed(coefficients=frozen([self.coefficients[0], *(scale * self.coefficients[1:])]))
+
+    def scaled(self, spring: float, damper: float) -> Polynomial:
+        """The law with all c_k and the damping times a factor."""
+        return self._changed(coefficients=frozen(spring * self.coefficients), damping=damper * self.damping)
 
     def by_cubic_stiffness(self, factor: float = 1.0) -> Polynomial:
         """The spring without its linear term, per c_3."""
@@ -402,6 +410,13 @@ class TransverseSprings(Law):
         k = value * self.length**2 + self.pretension / self.length
         check_number("stiffness", k, above=0, unit="N/m")
         return self._changed(spring_stiffness=k)
+
+    def scaled(self, spring: float, damper: float) -> TransverseSprings:
+        """The law with stiffness, pretension and damping times a factor."""
+        return self._changed(
+            spring_stiffness=spring * self.spring_stiffness, pretension=spring * self.pretension,
+            damping=damper * self.damping,
+        )  # fmt: skip
 
     def by_cubic_stiffness(self, factor: float = 1.0) -> TransverseSprings:
         """Springs of the stiffness L^2 without pretension."""

@@ -20,7 +20,6 @@ from frahm.errors import check_count
 from frahm.harmonic_balance import is_linear
 from frahm.loads import (
     WindClimate,
-    WindExcitation,
     lock_in_band,
     persistence,
     speed_window,
@@ -83,32 +82,45 @@ def fatigue_damage(
         If the case has no climate or no detail, or for bad input. What could not be settled is named in `unverified`.
     """
     case = load_case(case)
-    fatigue, climate, excitation = fatigue_section(case), wind_climate(case), wind_excitation(case)
+    fatigue, climate = fatigue_section(case), wind_climate(case)
     count = check_count("bins", fatigue.bins if bins is None else bins, at_least=4, at_most=2000)
     samples = check_count("samples", fatigue.samples if samples is None else samples, at_most=100_000)
     seed = check_count("seed", case.analysis.seed if seed is None else seed, at_least=0)
     workers = None if workers is None else check_count("workers", workers, at_most=1024)
-    band = _band(case, excitation, wind or fatigue.wind_speeds)
+    band = counted_band(case, wind)
     survey = WindSurvey(case, detail_of(case), samples, seed, workers, _seen(progress, count))
     bare = linear_pipe(case.without_absorbers())
     resonances = [] if bare is None else [speed for speed, _ in bare.resonances(*band)]
-    edges = first_edges(*band, max(4, count - 2 * math.floor(count * (1 - _FIRST) / 2)), resonances)
     if is_linear(build_system(case)) or bare is None:
         edges = first_edges(*band, count, resonances)
         return _result(survey, bare, linear_pipe(case), climate, edges)
+    survey, edges = surveyed(survey, climate, band, count, resonances)
+    return _result(survey, bare, None, climate, edges)
+
+
+def surveyed(
+    survey: WindSurvey, climate: WindClimate, band: tuple[float, float], count: int, resonances: list[float]
+) -> tuple[WindSurvey, Floats]:
+    """The motions at the middles of up to `count` wind bins, more where the damage changes, and the ends of the bins.
+
+    The damage is that of the section of an elastic pipe that takes most.
+    """
+    edges = first_edges(*band, max(4, count - 2 * math.floor(count * (1 - _FIRST) / 2)), resonances)
     edges = refined(edges, count, survey.look, lambda ends: _loss(survey, climate, ends))
     _keep(survey, edges)
     survey.carry()
-    survey = _at_the_worst_place(survey, case, climate, edges)
-    return _result(survey, bare, None, climate, edges)
+    return _at_the_worst_place(survey, survey.case, climate, edges), edges
 
 
 def _seen(progress: Progress | None, count: int) -> Callable[[int], None] | None:
     return None if progress is None else lambda done: progress(min(done, count), count)
 
 
-def _band(case: Case, excitation: WindExcitation, given: tuple[float, float] | None) -> tuple[float, float]:
-    """Wind speeds whose damage is counted [m/s]."""
+def counted_band(case: Case, given: tuple[float, float] | None = None) -> tuple[float, float]:
+    """Wind speeds that are counted [m/s]: those given, those of the case, or those that shed inside its window."""
+    excitation = wind_excitation(case)
+    if given is None and case.fatigue is not None:
+        given = case.fatigue.wind_speeds
     if given is not None:
         return speed_window(case, given)
     low, high = max(excitation.speed_range[0], _CALM), min(excitation.speed_range[1], _STORM)
@@ -140,13 +152,13 @@ def _at_the_worst_place(survey: WindSurvey, case: Case, climate: WindClimate, ed
     places = other_places(case)
     if places is None:
         return survey
-    best, tried = survey, {survey.detail.section}
+    best, tried = survey, {survey.place.section}
     for _ in range(_PLACES):
         larger = best.larger_place(*places, least=_LARGER)
         if larger is None or larger[0] in tried:
             break
         tried.add(larger[0])
-        other = best.moved_to(best.detail.with_place(larger[0], frozen(places[1][larger[1]])))
+        other = best.moved_to(best.place.with_place(larger[0], frozen(places[1][larger[1]])))
         if _sum(other, climate, edges) <= _sum(best, climate, edges):
             break
         best = other
@@ -160,7 +172,7 @@ def _sum(survey: WindSurvey, climate: WindClimate, edges: Floats) -> float:
 def _result(
     survey: WindSurvey, bare: LinearPipe | None, linear: LinearPipe | None, climate: WindClimate, edges: Floats
 ) -> FatigueDamage:
-    case, detail = survey.case, survey.detail
+    case, detail = survey.case, survey.place
     bare_detail = _bare_detail(detail, case)
     excitation, speeds = wind_excitation(case), middles(edges)
     chances = np.asarray(climate.probability(edges[:-1], edges[1:]))
@@ -264,11 +276,11 @@ def _settings(survey: WindSurvey, climate: WindClimate) -> dict[str, Any]:
     return {
         "duration": climate.duration,
         "curve": fatigue.curve,
-        "stress_factor": survey.detail.factor,
+        "stress_factor": survey.place.factor,
         "stress_concentration": fatigue.stress_concentration,
         "thickness": fatigue.thickness,
         "design_fatigue_factor": fatigue.design_fatigue_factor,
         "samples": survey.samples,
         "seed": survey.seed,
-        "section": survey.detail.section,
+        "section": survey.place.section,
     }

@@ -29,7 +29,7 @@ def doubts_of(
 ) -> tuple[str, ...]:
     """What speaks against the numbers."""
     found = [survey.at[speed] for speed in sorted(survey.at)]
-    doubts = [*_unsettled(found), *_uncounted(found), *_drifting(found)]
+    doubts = [*unsettled_winds(found), *_uncounted(found), *_drifting(found)]
     if known["binning"] > _COARSE:
         doubts.append(
             f"The damage with absorbers changes by {known['binning']:.0%} with the way it is summed over the wind bins:"
@@ -75,7 +75,8 @@ def notes_of(known: Mapping[str, Any], survey: WindSurvey) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _unsettled(found: list[WindFindings]) -> list[str]:
+def unsettled_winds(found: list[WindFindings]) -> list[str]:
+    """Sentence about the winds at which motions did not settle, if there are any."""
     winds = [one for one in found if one.unsettled > 0]
     if not winds:
         return []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
@@ -86,20 +86,31 @@ class WindSurvey:
     Attributes
     ----------
     case : Case
-    detail : Detail
+    detail : Detail or None
+        Whose damage is counted; none without one.
     samples, seed : int
     workers : int
         Threads; each takes a wind speed at a time.
+    changed : callable, optional
+        What is done to the system of the case at every wind.
     at : dict of float to WindFindings
     """
 
     case: Case
-    detail: Detail
+    detail: Detail | None
     samples: int
     seed: int
     workers: int | None = None
     seen: Seen | None = None
+    changed: Callable[[System], System] | None = None
     at: dict[float, WindFindings] = field(default_factory=dict)
+
+    @property
+    def place(self) -> Detail:
+        """The detail, of a survey that counts its damage."""
+        if self.detail is None:
+            raise RuntimeError("a survey without a detail counts no damage")
+        return self.detail
 
     def look(self, speeds: Sequence[float]) -> None:
         """Find the motions at the speeds not looked at yet [m/s]."""
@@ -119,7 +130,7 @@ class WindSurvey:
 
     def moved_to(self, detail: Detail) -> WindSurvey:
         """The same motions, their damage counted at another detail."""
-        new = WindSurvey(self.case, detail, self.samples, self.seed, self.workers)
+        new = WindSurvey(self.case, detail, self.samples, self.seed, self.workers, None, self.changed)
 
         def counted(found: WindFindings) -> WindFindings:
             damage = tuple(motion_damage(found.system, attractor, detail) for attractor in found.found)
@@ -141,7 +152,7 @@ class WindSurvey:
             if worst is None or worst.kind == "unsettled" or not found.worst_rate > 1e-3 * top:
                 continue
             section, ranges = largest_place(found.system, worst, sections, rows)
-            here = ranges[np.argmin(np.abs(sections - (self.detail.section or 0.0)))]
+            here = ranges[np.argmin(np.abs(sections - (self.place.section or 0.0)))]
             if ranges.max() > least * here and (best is None or found.worst_rate > best[0]):
                 best = (found.worst_rate, section, int(np.argmax(ranges)))
         return None if best is None else best[1:]
@@ -172,11 +183,13 @@ class WindSurvey:
 
     def _found(self, speed: float) -> WindFindings:
         system = build_system(self.case.with_wind(speed=speed))
+        if self.changed is not None:
+            system = self.changed(system)
         W = float(wind_excitation(self.case).frequency(speed))
         responses = tuple(periodic_responses_of(system, W, None))
         region = default_region(system, W, responses)
         found = attractors_from(_strobe(system, W), responses, region, self.samples, self.seed, PERIODS, False)
-        damage = tuple(motion_damage(system, attractor, self.detail) for attractor in found)
+        damage = self._damage(system, found)
         return WindFindings(speed, W, system, responses, found, damage)
 
     def _carried(self, speed: float) -> WindFindings:
@@ -184,9 +197,14 @@ class WindSurvey:
         strobe = _strobe(here.system, here.frequency)
         reached = attractors_reached(strobe, here.responses, self._from_neighbours(speed), PERIODS)
         new = tuple(one for one in reached if not any(_alike(one, known) for known in here.found))
-        damage = tuple(motion_damage(here.system, attractor, self.detail) for attractor in new)
+        damage = self._damage(here.system, new)
         found = dataclasses.replace(here.found, attractors=(*here.found.attractors, *new))
         return dataclasses.replace(here, found=found, damage=(*here.damage, *damage))
+
+    def _damage(self, system: System, attractors: Iterable[Attractor]) -> tuple[MotionDamage, ...]:
+        if self.detail is None:
+            return ()
+        return tuple(motion_damage(system, attractor, self.detail) for attractor in attractors)
 
 
 def _strobe(system: System, frequency: float) -> Stroboscope:

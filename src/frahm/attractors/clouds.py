@@ -22,6 +22,7 @@ STAY, WATCH = 1500, 1000  # periods a cloud must hold its members before it is b
 _STATIONARY, _STAYED, INSIDE = 0.8, 0.5, 0.9  # shares of strobes that must lie where others have been
 _LEAST_REACH = 0.25  # in standard deviations of the strobes: clouds nearer to each other than this count as one
 _QUERIES = 100  # strobes of a motion that are looked at
+_STRETCHES, _STRETCH, _HIGHEST = 48, 251, 17  # of a drift: stretches, their periods (a prime), strobes at their ends
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,10 +59,27 @@ class Cloud:
 
 
 def looks_stationary(strobes: Floats) -> bool:
-    """Whether a motion's strobes (2 K, 2n) cover in their second half what they have covered in the first."""
+    """Whether either half of a motion's strobes (2 K, 2n) covers what the other has covered."""
     half = len(strobes) // 2
-    tree, scale, reach = _tree(strobes[:half], 2.0, 0.95)
-    return bool(_share(tree, scale, reach, strobes[None, half:])[0] >= _STATIONARY)
+    parts = strobes[:half], strobes[half : 2 * half]
+    return all(_covers(here, there) for here, there in (parts, parts[::-1]))
+
+
+def drift(strobe: Stroboscope, state: Floats) -> Floats | None:
+    """Strobes (K, 2n) of a motion spread over a long time, for beats that nearly fit a few periods; None if lost."""
+    found, states = [], state[None]
+    for _ in range(_STRETCHES):
+        seen = strobe.run(states, _STRETCH, strobes=_HIGHEST)
+        if np.any(seen.codes):
+            return None
+        states = seen.states
+        found.append(seen.strobes[0])
+    return np.concatenate(found)
+
+
+def _covers(here: Floats, there: Floats) -> bool:
+    tree, scale, reach = _tree(here, 2.0, 0.95)
+    return bool(_share(tree, scale, reach, there[None])[0] >= _STATIONARY)
 
 
 def confirmed(strobe: Stroboscope, strobes: Floats, orbits: Sequence[Orbit]) -> Cloud | None:

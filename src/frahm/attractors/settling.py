@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.attractors.clouds import Cloud, confirmed, looks_stationary
+from frahm.attractors.clouds import Cloud, confirmed, drift, looks_stationary
 from frahm.attractors.orbits import Orbit, orbit_at, orbit_size, refined
 from frahm.attractors.stroboscope import Stroboscope
 from frahm.errors import Outcome
@@ -193,7 +193,13 @@ class Settling:
                 return None
             state = refined(self.strobe, strobes[-1], multiple)
             orbit = None if state is None else orbit_at(self.strobe, state, multiple)
-            return orbit if orbit is not None and orbit.contains(strobes[-multiple:]).any() else False
+            if orbit is not None and orbit.contains(strobes[-multiple:]).any():
+                return orbit
+            # a beat of nearly that many periods: what it covers shows only over a long time
+            spread = drift(self.strobe, strobes[-1])
+            if spread is None:
+                return False
+            strobes = spread
         if not looks_stationary(strobes):
             return None
         return confirmed(self.strobe, strobes, self.orbits) or False

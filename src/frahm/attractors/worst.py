@@ -12,7 +12,8 @@ from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.attractors.finding import MOST_SAMPLES, PERIODS, attractors_from
 from frahm.attractors.regions import Region, checked_region, region_for
 from frahm.attractors.stroboscope import stroboscope
-from frahm.errors import Outcome, check_count, check_number
+from frahm.case import load_case
+from frahm.errors import Outcome, ParameterError, check_count, check_number
 from frahm.harmonic_balance import (
     PeriodicResponse,
     begin,
@@ -21,8 +22,10 @@ from frahm.harmonic_balance import (
     periodic_responses_of,
     responses_on,
 )
-from frahm.response import ResponseCurve, frequency_response
-from frahm.systems import System, as_system, detuning_of, excitation_window
+from frahm.response import ResponseCurve
+from frahm.response.exact import exact_curve
+from frahm.response.wind import WindAxis, wind_axis
+from frahm.systems import System, as_system, detuning_of, excitation_window, with_parameters
 
 if TYPE_CHECKING:
     from frahm.case import Case
@@ -51,6 +54,9 @@ class WorstCase:
         Where the pipe peak occurs [rad/s].
     attractor : Attractor
         What causes the pipe peak.
+    pipe_rms, rms_frequency : float
+        Largest pipe rms [m] of an attractor that counts, and where it occurs [rad/s]; bracketed like the peaks only if
+        the rms was asked for.
     relative_detuning, relative_frequency : float
         Where the relative peak occurs [rad/s].
     not_excluded : float
@@ -69,6 +75,8 @@ class WorstCase:
     detuning: float
     frequency: float
     attractor: Attractor
+    pipe_rms: float
+    rms_frequency: float
     relative_detuning: float
     relative_frequency: float
     not_excluded: float
@@ -83,12 +91,14 @@ def worst_case(
     *,
     detuning: tuple[float, float] | None = None,
     frequency: tuple[float, float] | None = None,
+    wind: tuple[float, float] | None = None,
     samples: int = 100,
     min_basin: float = 0.01,
     seed: int = 1,
     region: dict[str, tuple[float, float]] | None = None,
     periods: int = PERIODS,
     workers: int | None = None,
+    rms: bool = False,
 ) -> WorstCase:
     """Largest pipe and relative peak over all attractors with a basin fraction of at least `min_basin`.
 
@@ -100,7 +110,10 @@ def worst_case(
     case_or_system : Case, System or str
         What is excited.
     detuning, frequency : tuple of float
-        Window (lo, hi) of sigma or Omega [rad/s]; give one of the two.
+        Window (lo, hi) of sigma or Omega [rad/s].
+    wind : tuple of float
+        Window (lo, hi) of the wind speed of a case [m/s]: shedding frequency and lift both follow it. Give one of the
+        three.
     samples : int
         Initial states at every frequency.
     min_basin : float
@@ -114,6 +127,8 @@ def worst_case(
         Periods after which a motion that has not settled is given up; it counts as it is, as unverified.
     workers : int, optional
         Threads; one per core by default.
+    rms : bool
+        Whether the largest rms of the pipe is bracketed, too.
 
     Returns
     -------
@@ -125,34 +140,54 @@ def worst_case(
         For bad input.
     """
     system = as_system(case_or_system)
-    lo, hi = excitation_window(system, detuning=detuning, frequency=frequency)
-    samples = check_count("samples", samples, at_most=MOST_SAMPLES)
-    min_basin = check_number("min_basin", min_basin, at_least=0.0, at_most=1.0)
-    seed = check_count("seed", seed, at_least=0)
-    periods = check_count("periods", periods, at_most=1_000_000)
-    workers = None if workers is None else check_count("workers", workers, at_most=1024)
-    given = None if region is None else checked_region(system, region)
-    curve = frequency_response(system, frequency=(lo, hi))
-    box = given or _region_of(system, curve, hi)
-    responses_at = _responses(system, lo, hi)
+    axis = None
+    if wind is None:
+        lo, hi = excitation_window(system, detuning=detuning, frequency=frequency)
+    elif detuning is not None or frequency is not None or isinstance(case_or_system, System):
+        allowed = "for a case, and without detuning and frequency"
+        raise ParameterError("wind", wind, allowed)
+    else:
+        axis = wind_axis(load_case(case_or_system), wind)
+        lo, hi = axis.frequency
+    return worst_over(
+        system, lo, hi, axis,
+        samples=check_count("samples", samples, at_most=MOST_SAMPLES),
+        min_basin=check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
+        seed=check_count("seed", seed, at_least=0),
+        region=None if region is None else checked_region(system, region),
+        periods=check_count("periods", periods, at_most=1_000_000),
+        workers=None if workers is None else check_count("workers", workers, at_most=1024),
+        rms=rms,
+    )  # fmt: skip
+
+
+def worst_over(
+    system: System, lo: float, hi: float, axis: WindAxis | None = None, *, samples: int, min_basin: float, seed: int,
+    region: Region | None = None, periods: int = PERIODS, workers: int | None = None, rms: bool = False,
+) -> WorstCase:  # fmt: skip
+    """`worst_case` of a system between two frequencies Omega [rad/s]; with a wind axis the lift follows the wind."""
+    factor = None if axis is None else axis.factor
+    curve = exact_curve(system, lo, hi, None, factor)
+    box = region or _region_of(system, curve, hi)
+    at, responses_at = _systems(system, axis), _responses(system, lo, hi, axis)
     surveys: dict[float, AttractorSet] = {}
+    sizes = (_pipe, _relative, _rms) if rms else (_pipe, _relative)
 
     def look(W: float, exponents: bool = False) -> None:
-        surveys[W] = attractors_from(
-            stroboscope(system, W, workers), responses_at(W), box, samples, seed, periods, exponents
-        )
+        strobe = stroboscope(at(W), W, workers)
+        surveys[W] = attractors_from(strobe, responses_at(W), box, samples, seed, periods, exponents)
 
     interrupted = False
     try:
         for W in _first_frequencies(curve, lo, hi):
             look(W)
-        _refine(surveys, look, lo, hi, min_basin)
+        _refine(surveys, look, lo, hi, min_basin, sizes)
         look(_largest(surveys, _pipe, min_basin)[0], exponents=True)
     except KeyboardInterrupt:
         interrupted = True
         if not surveys:
             raise
-    return _verdict(system, curve, surveys, lo, hi, min_basin, interrupted)
+    return _verdict(system, curve, surveys, lo, hi, min_basin, interrupted, sizes)
 
 
 def _pipe(attractor: Attractor) -> float:
@@ -163,11 +198,25 @@ def _relative(attractor: Attractor) -> float:
     return attractor.relative_peak
 
 
-def _responses(system: System, lo: float, hi: float) -> Callable[[float], list[PeriodicResponse]]:
+def _rms(attractor: Attractor) -> float:
+    return attractor.pipe_rms
+
+
+def _systems(system: System, axis: WindAxis | None) -> Callable[[float], System]:
+    """The system as it is driven at a frequency."""
+    if axis is None:
+        return lambda W: system
+    return lambda W: with_parameters(system, force=axis.lift_factor(W))
+
+
+def _responses(
+    system: System, lo: float, hi: float, axis: WindAxis | None
+) -> Callable[[float], list[PeriodicResponse]]:
     """Periodic responses at a frequency of the window, whose branches are followed once."""
     if is_linear(system) or not np.any(system.forcing):
-        return lambda W: periodic_responses_of(system, W, None)
-    search = begin(system, lo, hi, None)
+        at = _systems(system, axis)
+        return lambda W: periodic_responses_of(at(W), W, None)
+    search = begin(system, lo, hi, None, None if axis is None else axis.factor)
     tracks = find_branches(search)
     return lambda W: responses_on(search, tracks, W)
 
@@ -200,13 +249,14 @@ def _first_frequencies(curve: ResponseCurve, lo: float, hi: float) -> list[float
 
 
 def _refine(
-    surveys: dict[float, AttractorSet], look: Callable[[float], None], lo: float, hi: float, min_basin: float
-) -> None:
+    surveys: dict[float, AttractorSet], look: Callable[[float], None], lo: float, hi: float, min_basin: float,
+    sizes: tuple[Size, ...],
+) -> None:  # fmt: skip
     """Halve the gaps beside the worst until they are fine."""
     for _ in range(_ROUNDS):
         middles = {
             middle
-            for size in (_pipe, _relative)
+            for size in sizes
             for middle in _gaps(surveys, _largest(surveys, size, min_basin)[0], _FINE * (hi - lo))
         }
         if not middles:
@@ -241,10 +291,11 @@ def _largest(surveys: dict[float, AttractorSet], size: Size, min_basin: float) -
 
 def _verdict(
     system: System, curve: ResponseCurve, surveys: dict[float, AttractorSet], lo: float, hi: float, min_basin: float,
-    interrupted: bool,
+    interrupted: bool, sizes: tuple[Size, ...],
 ) -> WorstCase:  # fmt: skip
     W, worst = _largest(surveys, _pipe, min_basin)
     W_relative, stroke = _largest(surveys, _relative, min_basin)
+    W_rms, loudest = _largest(surveys, _rms, min_basin)
     doubts = [*curve.unverified]
     if interrupted or any(survey.outcome is Outcome.INTERRUPTED for survey in surveys.values()):
         doubts.append(Outcome.INTERRUPTED.value)
@@ -253,7 +304,7 @@ def _verdict(
             if attractor.kind == "unsettled" and attractor.basin_fraction >= min_basin:
                 share = f"{100 * attractor.basin_fraction:.2g} % of the motions at Omega = {at:.6g} rad/s"
                 doubts.append(f"{share} are unsettled: {attractor.outcome.value}")
-    if any(_gaps(surveys, at, _FINE * (hi - lo)) for at in (W, W_relative)):
+    if any(_gaps(surveys, at, _FINE * (hi - lo)) for at in {_largest(surveys, size, min_basin)[0] for size in sizes}):
         doubts.append("The worst was not bracketed to 0.2 % of the window.")
     possible = [a.pipe_peak for s in surveys.values() for a in s if a.basin_interval[1] >= min_basin]
     return WorstCase(
@@ -262,6 +313,8 @@ def _verdict(
         detuning=float(detuning_of(system, W)),
         frequency=W,
         attractor=worst,
+        pipe_rms=loudest.pipe_rms,
+        rms_frequency=W_rms,
         relative_detuning=float(detuning_of(system, W_relative)),
         relative_frequency=W_relative,
         not_excluded=float(np.nanmax([*possible, worst.pipe_peak])),

@@ -13,6 +13,7 @@ from frahm.case.absorber import (
 from frahm.case.analysis import Analysis
 from frahm.case.case import Case
 from frahm.case.climate import Climate, ClimateRow, Weibull
+from frahm.case.design import FAMILIES, OBJECTIVES, Design, Scatter
 from frahm.case.fatigue import SN_CURVE_NAMES, Fatigue
 from frahm.case.fields import FieldFacts, FieldValue, field_table, field_values
 from frahm.case.loading import builtin_names, builtin_text, case_from_text, load_case, template_text
@@ -23,6 +24,8 @@ from frahm.case.tube import Tube
 from frahm.case.wind import Turbulence, Wind
 
 __all__ = [
+    "FAMILIES",
+    "OBJECTIVES",
     "SN_CURVE_NAMES",
     "Absorber",
     "Analysis",
@@ -32,6 +35,7 @@ __all__ = [
     "Climate",
     "ClimateRow",
     "CubicLaw",
+    "Design",
     "DryFriction",
     "EndStops",
     "Fatigue",
@@ -41,6 +45,7 @@ __all__ = [
     "ModeTable",
     "Pipe",
     "PolynomialLaw",
+    "Scatter",
     "TransverseSpringsLaw",
     "Tube",
     "Turbulence",

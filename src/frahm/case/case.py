@@ -13,6 +13,7 @@ from pydantic import Field, ValidationError, field_validator, model_validator
 from frahm.case.absorber import Absorber
 from frahm.case.analysis import Analysis
 from frahm.case.climate import Climate
+from frahm.case.design import Design
 from frahm.case.fatigue import Fatigue
 from frahm.case.pipe import AnyPipe
 from frahm.case.problems import parameter_error
@@ -51,6 +52,9 @@ class Case(Section):
     )
     fatigue: Fatigue | None = Field(
         default=None, title="Fatigue", description="The detail whose fatigue damage is counted."
+    )
+    design: Design | None = Field(
+        default=None, title="Design", description="What the best absorber is asked for, by frahm design."
     )
     analysis: Analysis = Field(default=Analysis(), title="Analysis", description="What is computed for the case.")
 
@@ -140,6 +144,10 @@ class Case(Section):
     def with_fatigue(self, /, **changes: Any) -> Case:
         """Case with other values of the fatigue detail, such as ``curve="E"``; what is not named stays."""
         return self._with_section("fatigue", changes)
+
+    def with_design(self, /, **changes: Any) -> Case:
+        """Case with other settings of the design, such as ``objective="rms"``; what is not named stays."""
+        return self._with_section("design", changes)
 
     def with_analysis(self, /, **changes: Any) -> Case:
         """Case with other settings of the analysis, such as ``seed=2``; what is not named stays."""

@@ -161,7 +161,7 @@ def _no_such_file(source: str) -> ParameterError:
 
 def _from_data(data: Any, source: str | None = None, lines: Mapping[str, int] | None = None) -> Case:
     if not isinstance(data, dict):
-        allowed = "a mapping with the sections pipe, wind, absorbers, climate, fatigue, analysis"
+        allowed = "a mapping with the sections pipe, wind, absorbers, climate, fatigue, design, analysis"
         raise ParameterError("case", data, allowed, where=source)
     odd = next((key for key in data if not isinstance(key, str)), None)
     if odd is not None:

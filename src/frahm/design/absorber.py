@@ -1,9 +1,9 @@
-"""The absorber that is designed: a mass on a spring with a linear and a cubic part, beside a damper."""
+"""The absorber that is designed: a mass on a spring with linear, cubic and quintic parts, beside a damper."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from frahm.case import Absorber, Case, CubicLaw, LinearLaw, PolynomialLaw
 from frahm.errors import ParameterError, check_number
@@ -11,7 +11,7 @@ from frahm.errors import ParameterError, check_number
 if TYPE_CHECKING:
     from frahm.case.absorber import Law
 
-FAMILIES = ("sink", "tuned", "mixed")
+UNITS = {"rho2": "1", "linear": "1/s^2", "kappa": "1/(m^2 s^2)", "xi2": "1/s", "quintic": "1/(m^4 s^2)"}
 
 
 @dataclass(frozen=True)
@@ -28,35 +28,62 @@ class DesignedAbsorber:
         Cubic stiffness [1/(m^2 s^2)]; 0 for a tuned mass damper.
     xi2 : float
         Damping [1/s].
+    quintic : float
+        Stiffness of the fifth power [1/(m^4 s^2)].
+    position : float, optional
+        Where on an elastic pipe it hangs [m]; None where the case says so.
     """
 
     rho2: float
     linear: float
     kappa: float
     xi2: float
+    quintic: float = 0.0
+    position: float | None = None
 
     def __post_init__(self) -> None:
         check_number("rho2", self.rho2, above=0)
-        for name, unit in (("linear", "1/s^2"), ("kappa", "1/(m^2 s^2)"), ("xi2", "1/s")):
-            check_number(name, getattr(self, name), at_least=0, unit=unit)
-        if not self.linear and not self.kappa:
+        for name in ("linear", "kappa", "xi2", "quintic"):
+            check_number(name, getattr(self, name), at_least=0, unit=UNITS[name])
+        if not self.linear and not self.nonlinear:
             raise ParameterError("linear, kappa", (0.0, 0.0), "a spring: at least one of the two above 0")
+
+    @property
+    def nonlinear(self) -> bool:
+        """Whether its spring is not linear."""
+        return bool(self.kappa or self.quintic)
 
     @property
     def family(self) -> str:
         """Corner of the family it belongs to: "sink", "tuned" or "mixed"."""
-        if not self.kappa:
+        if not self.nonlinear:
             return "tuned"
         return "mixed" if self.linear else "sink"
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Its parameters by name, those of the spring's fifth power and of the place only where there are any."""
+        found = {"rho2": self.rho2, "linear": self.linear, "kappa": self.kappa, "xi2": self.xi2}
+        if self.quintic:
+            found["quintic"] = self.quintic
+        return found if self.position is None else found | {"position": self.position}
 
     def law(self, host_mass: float) -> Law:
         """Force law in SI units for a pipe of the given mass [kg]."""
         damping = host_mass * self.xi2
-        if self.family == "sink":
-            return CubicLaw(stiffness=host_mass * self.kappa, damping=damping)
         if self.family == "tuned":
             return LinearLaw(stiffness=host_mass * self.linear, damping=damping)
-        return PolynomialLaw(coefficients=(host_mass * self.linear, 0.0, host_mass * self.kappa), damping=damping)
+        if self.family == "sink" and not self.quintic:
+            return CubicLaw(stiffness=host_mass * self.kappa, damping=damping)
+        powers = (self.linear, 0.0, self.kappa, 0.0, self.quintic)[: 5 if self.quintic else 3]
+        return PolynomialLaw(coefficients=tuple(host_mass * power for power in powers), damping=damping)
+
+
+def parameters_text(design: DesignedAbsorber) -> str:
+    """Parameters for a sentence."""
+    units = UNITS | {"position": "m", "rho2": ""}
+    given = {name: value for name, value in design.parameters.items() if value or name in ("rho2", "xi2")}
+    return ", ".join(f"{name} {value:.5g} {units[name]}".rstrip() for name, value in given.items())
 
 
 def absorber_of(case: Case) -> DesignedAbsorber | None:
@@ -68,18 +95,17 @@ def absorber_of(case: Case) -> DesignedAbsorber | None:
     if absorber.stops is not None or absorber.friction is not None or absorber.gravity:
         return None
     if isinstance(law, CubicLaw):
-        linear, cubic = 0.0, law.stiffness
+        powers: tuple[float, ...] = (0.0, 0.0, law.stiffness)
     elif isinstance(law, LinearLaw):
-        linear, cubic = law.stiffness, 0.0
-    elif not isinstance(law, PolynomialLaw):
-        return None
+        powers = (law.stiffness,)
+    elif isinstance(law, PolynomialLaw):
+        powers = law.coefficients
     else:
-        powers = (*law.coefficients, 0.0, 0.0)
-        linear, cubic = powers[0], powers[2]
-        odd = all(c == 0 for i, c in enumerate(law.coefficients) if i not in (0, 2))
-        if not odd or linear < 0 or cubic < 0 or not (linear or cubic):
-            return None
-    return DesignedAbsorber(absorber.mass / host, linear / host, cubic / host, law.damping / host)
+        return None
+    if any(power and k not in (0, 2, 4) for k, power in enumerate(powers)) or min(powers) < 0 or not any(powers):
+        return None
+    linear, _, cubic, _, quintic = (power / host for power in (*powers, 0.0, 0.0, 0.0, 0.0)[:5])
+    return DesignedAbsorber(absorber.mass / host, linear, cubic, law.damping / host, quintic)
 
 
 def with_design(case: Case, design: DesignedAbsorber, name: str | None = None) -> Case:
@@ -88,7 +114,9 @@ def with_design(case: Case, design: DesignedAbsorber, name: str | None = None) -
     old = case.absorbers[0] if case.absorbers else None
     fields = set() if old is None else old.model_fields_set - {"stops", "friction", "gravity"}
     kept = {key: getattr(old, key) for key in fields}
-    changes = {"mass": host * design.rho2, "law": design.law(host)} | ({} if name is None else {"name": name})
+    changes: dict[str, Any] = {"mass": host * design.rho2, "law": design.law(host)}
+    changes |= {} if name is None else {"name": name}
+    changes |= {} if design.position is None else {"position": design.position}
     new = Absorber(**(kept | changes))
     return Case(
         **({key: getattr(case, key) for key in case.model_fields_set} | {"absorbers": (new, *case.absorbers[1:])})

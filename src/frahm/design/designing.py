@@ -4,26 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from frahm import __version__
-from frahm.case import Case, load_case
-from frahm.design.absorber import FAMILIES, DesignedAbsorber, absorber_of, with_design
+from frahm.case import FAMILIES, Case, Design, load_case
+from frahm.design.absorber import DesignedAbsorber, absorber_of, parameters_text, with_design
+from frahm.design.disturbance import Disturbance
 from frahm.design.exact import Windows, exact_birth
 from frahm.design.finalists import Finalist, finalists
 from frahm.design.hardware import Hardware, as_built, hardware
-from frahm.design.host import Host, host_of
+from frahm.design.objective import Objective
+from frahm.design.problem import Problem
 from frahm.design.robustness import Sensitivity, ToleranceBand, sensitivities, tolerance_band
-from frahm.design.screening import Screening
 from frahm.design.search import Limits, TierOne
-from frahm.design.settings import DesignSettings
-from frahm.design.space import design_space
+from frahm.design.settings import DesignSettings, settings_for
 from frahm.design.study import DesignStudy, MarginPoint, Rival
 from frahm.design.verdict import verdict
-from frahm.design.verification import Verification, glimpse, verification
+from frahm.design.verification import Verification, climate_verification, glimpse, verification
 from frahm.errors import ParameterError
 from frahm.systems import System, build_system
 
@@ -32,11 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 Progress = Callable[[str, int, int], None]
-_WIDE = (0.7, 1.3)  # of the pipe's frequency: where the lift may lock in
-_RESPONSE_POINTS, _BIRTH_POINTS = 121, 481
-_STEP = (
-    0.05  # of the pipe's frequency: errors a design with scatter is searched and verified at, refined beside the worst
-)
 _MOST_FINALISTS = 4
 _JUMP = 1.1  # a design whose peak grows by more than this beside the force has met a detached curve
 _MARGIN_SAMPLES = 40
@@ -64,26 +57,29 @@ class _Found:
 
 def design_absorber(
     case: Case | str | os.PathLike[str] | Mapping[str, Any],
-    mass_ratio: float | None = None,
+    mass_ratio: float | tuple[float, float] | None = None,
     *,
-    settings: DesignSettings | None = None,
+    settings: Design | None = None,
     progress: Progress | None = None,
     **changes: Any,
 ) -> DesignStudy:
     """Best absorber of a family for a case, verified over all attractors and compared with its rivals.
 
-    Three tiers: every one-harmonic response of many designs in closed form; exact harmonic balance with stability and
-    births of detached curves of the best; all attractors from sampled states of the finalists. The peaks promised
-    are those of the last tier.
+    What is asked for stands in the section `design` of the case; `settings` and `changes` take its place. Three tiers:
+    every one-harmonic response of many designs in closed form; exact harmonic balance with stability and births of
+    detached curves of the best; all attractors from sampled states of the finalists. The values promised are those of
+    the last tier.
 
     Parameters
     ----------
     case : Case, str, Path or dict
         A pipe in the wind; its first absorber, if it has one, is replaced. The window of the detuning counts.
-    mass_ratio : float, optional
-        Mass of the absorber over that of the pipe [-]; by default that of the case's absorber, or 0.02.
+    mass_ratio : float or tuple of float, optional
+        Mass of the absorber over that of the pipe [-], or a range of it; by default that of the case's absorber, or
+        0.02.
     settings : DesignSettings, optional
-        Everything else; `changes` name single settings, such as ``family="mixed"`` or ``scatter=0.1``.
+        Everything else, in place of the section `design` of the case; `changes` name single settings, such as
+        ``family="mixed"``, ``objective="rms"`` or ``scatter=0.1``.
     progress : callable, optional
         Called with what is done, steps done and steps in all.
 
@@ -98,7 +94,7 @@ def design_absorber(
         For bad input, or if no design keeps the limits: the one that binds is named.
     """
     case = load_case(case)
-    asked = _settings(case, mass_ratio, settings, changes)
+    asked = settings_for(case, mass_ratio, settings, changes)
     work = _Designing(case, asked, progress)
     interrupted = False
     try:
@@ -112,7 +108,7 @@ def design_absorber(
 
 def verified_designs(
     case: Case | str | os.PathLike[str] | Mapping[str, Any],
-    settings: DesignSettings,
+    settings: Design,
     families: Sequence[str] = FAMILIES,
     progress: Progress | None = None,
 ) -> tuple[Rival, ...]:
@@ -120,31 +116,13 @@ def verified_designs(
 
     A family of which no design keeps the limits is left out.
     """
-    work = _Designing(load_case(case), settings, progress)
+    case = load_case(case)
+    work = _Designing(case, settings_for(case, settings=settings), progress)
     for family in families:
         rival = work.designed(family)
         if rival is not None:
             work.found.rivals[rival.name] = rival
     return tuple(work.found.rivals.values())
-
-
-def _settings(
-    case: Case, mass_ratio: float | None, settings: DesignSettings | None, changes: dict[str, Any]
-) -> DesignSettings:
-    known = DesignSettings.__dataclass_fields__
-    for name in changes:
-        if name not in known:
-            from frahm.errors import nearest
-
-            near = nearest(name, known)
-            hint = f"Did you mean {near!r}?" if near else None
-            raise ParameterError(name, changes[name], "one of " + ", ".join(known), hint=hint)
-    base = {} if settings is None else {name: getattr(settings, name) for name in known}
-    if mass_ratio is not None:
-        changes = changes | {"mass_ratio": mass_ratio}
-    elif settings is None and "mass_ratio" not in changes and case.absorbers:
-        changes = changes | {"mass_ratio": case.absorbers[0].mass / case.pipe.mass}
-    return DesignSettings(**(base | changes))
 
 
 class _Designing:
@@ -153,23 +131,13 @@ class _Designing:
     def __init__(self, case: Case, settings: DesignSettings, progress: Progress | None):
         self.case, self.settings, self.progress = case, settings, progress
         self.found = _Found()
-        self.host: Host = host_of(self.system_of(self._any_design()))
-        omega = self.host.frequency
-        lo, hi = case.analysis.detuning
-        moving = settings.scatter > 0
-        wide = (_WIDE[0] * omega, _WIDE[1] * omega)
-        self.windows = Windows(wide if moving else (omega + lo, omega + hi), wide, moving)
-        count = 1 + 2 * math.ceil(settings.scatter / _STEP - 1e-9)
-        self.errors = [float(r) for r in np.linspace(1 - settings.scatter, 1 + settings.scatter, count)]
-        self.limits = Limits(settings.force_margin, settings.stroke or math.inf, False)
-        self.tiers: dict[tuple[str, float], TierOne] = {}
+        self.problem = Problem.of(case, settings)
+        self.objective = self.problem.objective
+        self.limits = self.problem.limits
         self.done, self.total = 0, 0
 
     def system_of(self, design: DesignedAbsorber) -> System:
         return build_system(with_design(self.case, design))
-
-    def _any_design(self) -> DesignedAbsorber:
-        return DesignedAbsorber(self.settings.mass_ratio, 0.0, 1.0, 0.0)
 
     def run(self) -> None:
         # the mixture is held against its corners, so they come first
@@ -194,39 +162,27 @@ class _Designing:
     def _step(self, title: str) -> None:
         if self.progress:
             best = self.found.best
-            so_far = f"; best so far {best.worst_pipe_peak:#.3g} m" if best else ""
+            so_far = f"; best so far {best.value:#.3g} {self.objective.unit_text}".rstrip() if best else ""
             self.progress(title + so_far, min(self.done, self.total), self.total)
         self.done += 1
 
     def _tier(self, family: str, margin: float | None = None) -> TierOne:
-        """Closed form for a family, with the force given and with its margin."""
-        most = self.settings.force_margin if margin is None else margin
-        if (family, most) not in self.tiers:
-            windows = self.windows
-            forces = sorted({1.0, most}) if family != "tuned" else [1.0]
-            screening = Screening(
-                self.host,
-                self.host.conditions(
-                    self.errors, windows.window, _RESPONSE_POINTS, moving=windows.moving, forces=forces
-                ),
-                self.host.conditions(self.errors, windows.wide, _BIRTH_POINTS),
-            )
-            space = design_space(self.host, self.case.pipe.mass, family, self.settings)
-            self.tiers[family, most] = TierOne(screening, space)
-        return self.tiers[family, most]
+        return self.problem.tier(family, margin)
 
     def _binding(self, family: str) -> str:
         return self._tier(family).binding(self.limits)
 
     def _limits_text(self) -> str:
         parts = [f"force margin {self.settings.force_margin:g}"]
-        if self.settings.stroke is not None:
-            parts.append(f"stroke {self.settings.stroke:g} m")
+        if math.isfinite(self.limits.stroke):
+            parts.append(f"stroke {self.limits.stroke:g} m")
+        if self.limits.stress is not None:
+            parts.append(f"spring stress {self.limits.stress:g} Pa")
         return ", ".join(parts)
 
     def _finalists(self, family: str, limits: Limits) -> list[Finalist]:
         tier = self._tier(family, limits.force_margin)
-        kept, discarded = finalists(tier, self.system_of, self.windows, self.errors, limits)
+        kept, discarded = finalists(tier, self.system_of, self.problem.windows, self.problem.disturbances, limits)
         self.found.discarded += [f"{_DEVICES[family]}: {reason}" for reason in discarded]
         return kept
 
@@ -236,18 +192,17 @@ class _Designing:
         waiting = self._finalists(family, self.limits)
         best = self._cornered(family)
         for finalist in waiting[:_MOST_FINALISTS]:
-            if best is not None and best.verified and finalist.predicted >= best.worst_pipe_peak:
+            if best is not None and best.verified and finalist.predicted >= best.value:
                 continue
-            system = self.system_of(finalist.design)
-            checked = self._verify(system)
+            checked = self._verify(with_design(self.case, finalist.design))
             rival = _rival(_DEVICES[family], finalist.design, checked, finalist.force_margin)
-            more = self._with_margin(rival, system)
+            more = self._with_margin(rival)
             if more is not None and more.pipe_peak > _JUMP * self.settings.force_margin * checked.pipe_peak:
                 self._discard(
                     rival, f"with {self.settings.force_margin:g} times the force it is {more.pipe_peak:.4g} m"
                 )
                 continue
-            if best is None or (rival.verified, -rival.worst_pipe_peak) > (best.verified, -best.worst_pipe_peak):
+            if best is None or (rival.verified, -rival.value) > (best.verified, -best.value):
                 if best is not None and not best.verified:
                     self._discard(best, f"unverified: {' '.join(best.unverified[:1])}")
                 best = rival
@@ -262,39 +217,57 @@ class _Designing:
         corners = [self.found.rivals[n] for n in ("sink", "tuned mass damper") if n in self.found.rivals]
         if family != "mixed" or not corners:
             return None
-        corner = min(corners, key=lambda rival: (not rival.verified, rival.worst_pipe_peak))
-        return Rival(**{**vars(corner), "name": "mixed"})
+        corner = min(corners, key=lambda rival: (not rival.verified, rival.value))
+        return replace(corner, name="mixed")
 
-    def _with_margin(self, rival: Rival, system: System) -> Verification | None:
+    def _with_margin(self, rival: Rival) -> Verification | None:
         """Worst case with the margin on the force; None where there is none, or no nonlinear spring."""
-        if rival.design is None or not rival.design.kappa or self.settings.force_margin == 1:
+        if rival.design is None or not rival.design.nonlinear or self.settings.force_margin == 1:
             return None
-        return self._verify(
-            system, force=self.settings.force_margin, samples=min(_MARGIN_SAMPLES, self.settings.samples)
-        )
+        samples = min(_MARGIN_SAMPLES, self.settings.samples)
+        return self._worst(self.system_of(rival.design), force=self.settings.force_margin, samples=samples)
 
     def _discard(self, rival: Rival, why: str) -> None:
         d = rival.design
         if d is not None:
             self.found.discarded.append(
-                f"{rival.name}: kappa {d.kappa:.5g}, linear {d.linear:.4g}, xi2 {d.xi2:.4g} reaches"
-                f" {rival.worst_pipe_peak:.4g} m over all attractors; {why}."
+                f"{rival.name}: {parameters_text(d)} has a {self.objective.title} of {rival.value:.4g}"
+                f" {self.objective.unit_text}over all attractors; {why}."
             )
 
-    def _verify(self, system: System, *, force: float = 1.0, samples: int | None = None) -> Verification:
-        count = self.settings.samples if samples is None else samples
-        return verification(system, self.windows, self.errors, samples=count, seed=self.settings.seed, force=force)
+    def _verify(self, case: Case) -> Verification:
+        """Value of the objective for a case, over all attractors."""
+        if self.objective.over_climate:
+            return climate_verification(
+                case, self.problem.disturbances, self.objective, samples=self._climate_samples, seed=self.settings.seed
+            )
+        return self._worst(build_system(case))
+
+    @property
+    def _climate_samples(self) -> int:
+        """Initial states at every wind: those of the section `fatigue` if the samples of the design were left alone."""
+        fatigue = self.case.fatigue
+        if fatigue is not None and "samples" not in self.settings.model_fields_set:
+            return fatigue.samples
+        return self.settings.samples
+
+    def _worst(self, system: System, *, force: float = 1.0, samples: int | None = None) -> Verification:
+        problem = self.problem
+        worst = self.objective if not self.objective.over_climate else Objective("peak", self.objective.quantile)
+        return verification(
+            system, problem.windows, problem.disturbances, worst, force=force, seed=self.settings.seed,
+            samples=self.settings.samples if samples is None else samples,
+        )  # fmt: skip
 
     def _others(self) -> None:
         """The pipe without absorber, and the case's own."""
         self._step("no absorber")
-        bare = build_system(self.case.without_absorbers())
-        self.found.rivals["none"] = _rival("none", None, self._verify(bare), math.inf)
+        self.found.rivals["none"] = _rival("none", None, self._verify(self.case.without_absorbers()), math.inf)
         if self.case.absorbers:
             self._step("the case's own absorber")
-            system = build_system(self.case)
-            checked = self._verify(system)
-            free, _ = exact_birth(system, self.windows, self.errors, 1.0, 1.1 * self.settings.force_margin)
+            problem, most = self.problem, 1.1 * self.settings.force_margin
+            checked = self._verify(self.case)
+            free, _ = exact_birth(build_system(self.case), problem.windows, problem.disturbances, 1.0, most)
             self.found.rivals["case"] = _rival("case", absorber_of(self.case), checked, free)
 
     def _made(self) -> None:
@@ -303,29 +276,39 @@ class _Designing:
         if best is None or best.design is None:
             return
         self._step("hardware, tolerances and sensitivities")
-        design, found = best.design, self.found
+        design, found, problem, settings = best.design, self.found, self.problem, self.settings
         stroke = max(best.relative_peak, more.relative_peak if more else 0.0)
-        found.hardware = hardware(self.case, design, stroke, best.frequency)
+        room, stress = settings.spring_length, settings.spring_stress
+        found.hardware = hardware(self.case, design, stroke, best.frequency, room, stress)
         found.tolerance = tolerance_band(
-            design, best.worst_pipe_peak, self.system_of, self.windows, self.errors, self.settings.seed
+            design, best.worst_pipe_peak, self.system_of, problem.windows, problem.disturbances, settings.seed
         )
         found.sensitivities = sensitivities(
-            design, self.system_of, self.windows, self.errors, self._tier(self.settings.family).screening,
+            design, self.system_of, problem.windows, problem.disturbances, self._tier(settings.family).screening,
             self.case.pipe.mass,
         )  # fmt: skip
-        if design.kappa:
-            found.built = self._verify(build_system(as_built(self.case, design, stroke)))
+        if design.kappa and not design.quintic:
+            found.built = self._worst(build_system(as_built(self.case, design, stroke, room)))
 
     def _error_table(self) -> None:
         """Every device at every frequency error, not retuned."""
-        windows = Windows(self.windows.wide, self.windows.wide, True)
+        wide = self.problem.wide
+        windows, objective = Windows(wide, wide, True), Objective()
         if not self.settings.errors:
             return
         for name, rival in sorted(self.found.rivals.items()):
             self._step(f"frequency errors: {name}")
             system = self._rival_system(rival)
             rows = [
-                glimpse(system, windows, r, samples=_TABLE_SAMPLES, seed=self.settings.seed, periods=_TABLE_PERIODS)
+                glimpse(
+                    system,
+                    windows,
+                    Disturbance(pipe_frequency=r),
+                    objective,
+                    samples=_TABLE_SAMPLES,
+                    seed=self.settings.seed,
+                    periods=_TABLE_PERIODS,
+                )
                 for r in self.settings.errors
             ]
             self.found.table[name] = tuple(row.pipe_peak for row in rows)
@@ -345,12 +328,13 @@ class _Designing:
             return
         for margin in self.settings.margins:
             self._step(f"force margin {margin:g}")
-            kept = self._finalists(family, Limits(margin, self.limits.stroke, False))
+            kept = self._finalists(family, replace(self.limits, force_margin=margin))
             if not kept:
                 continue
-            checked = self._verify(self.system_of(kept[0].design))
+            design = kept[0].design
+            checked = self._verify(with_design(self.case, design))
             self.found.trade_off.append(
-                MarginPoint(margin, kept[0].design, checked.pipe_peak, checked.verified, checked.tier)
+                MarginPoint(margin, design, checked.value, checked.pipe_peak, checked.verified, checked.tier)
             )
 
     def study(self, interrupted: bool) -> DesignStudy:
@@ -388,9 +372,9 @@ class _Designing:
             tolerance=found.tolerance,
             sensitivities=found.sensitivities,
             as_built=found.built.pipe_peak if found.built else math.nan,
-            screened=sum(tier.count for tier in self.tiers.values()),
+            screened=self.problem.screened,
             discarded=tuple(dict.fromkeys(found.discarded)),
-            verdict=verdict(rivals, self.settings.errors, found.table, self.settings.scatter),
+            verdict=verdict(rivals, self.settings.errors, found.table, self.settings.scatter, self.objective),
             unverified=tuple(dict.fromkeys(doubts)),
             interrupted=interrupted,
             version=__version__,
@@ -401,9 +385,11 @@ def _rival(name: str, design: DesignedAbsorber | None, checked: Verification, fo
     return Rival(
         name=name,
         design=design,
+        value=checked.value,
         worst_pipe_peak=checked.pipe_peak,
         relative_peak=checked.relative_peak,
-        error=checked.error,
+        pipe_rms=checked.pipe_rms,
+        error=checked.disturbance.pipe_frequency,
         frequency=checked.frequency,
         kind=checked.kind,
         force_margin=force_margin,

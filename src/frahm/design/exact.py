@@ -1,4 +1,4 @@
-"""Tier 2: one design by the exact equations, over all frequency errors, with the force given and with more of it."""
+"""Tier 2: one design by the exact equations, under all disturbances, with the force given and with more of it."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frahm.design.disturbance import Disturbance
 from frahm.response import ResponseCurve, frequency_response
-from frahm.systems import System, with_parameters
+from frahm.response.exact import exact_curve
+from frahm.response.wind import WindAxis
+from frahm.systems import System
 
 _STEPS = 9
 _FINE = 1e-3
@@ -23,17 +26,31 @@ class Windows:
     ----------
     window, wide : tuple of float
         Both move with the frequency of the pipe if `moving`, the wide one always does.
+    axis : WindAxis, optional
+        Winds instead: both windows are its shedding frequencies, and the force follows the wind.
     """
 
     window: tuple[float, float]
     wide: tuple[float, float]
     moving: bool
+    axis: WindAxis | None = None
 
-    def at(self, error: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    def at(self, disturbance: Disturbance) -> tuple[tuple[float, float], tuple[float, float]]:
         """Window of the response, and the one in which the complete curve is followed."""
-        scale = error if self.moving else 1.0
+        if self.axis is not None:
+            return self.window, self.window
+        r = disturbance.pipe_frequency
+        scale = r if self.moving else 1.0
         lo, hi = self.window[0] * scale, self.window[1] * scale
-        return (lo, hi), (min(lo, self.wide[0] * error), max(hi, self.wide[1] * error))
+        return (lo, hi), (min(lo, self.wide[0] * r), max(hi, self.wide[1] * r))
+
+    def curve(self, system: System, disturbance: Disturbance) -> ResponseCurve:
+        """The complete response under a disturbance."""
+        _, wide = self.at(disturbance)
+        changed = disturbance.of(system)
+        if self.axis is None:
+            return frequency_response(changed, frequency=wide)
+        return exact_curve(changed, *wide, None, self.axis.factor)
 
 
 @dataclass(frozen=True)
@@ -43,21 +60,22 @@ class ExactJudgement:
     Attributes
     ----------
     pipe_peak, relative_peak : float
-        Largest over all branches, frequencies and frequency errors with the force given [m].
-    error, frequency : float
+        Largest over all branches, frequencies and disturbances with the force given [m].
+    disturbance : Disturbance
+    frequency : float
         Where the pipe peak occurs.
     growth_rate : float
         Largest growth rate of a disturbance [1/s], saddles of multivalued responses left out.
     detached : bool
         Whether there is a detached curve with the force given.
     peaks : tuple of float
-        Largest pipe peak over the factor on the force [m], for every force and every frequency error.
+        Largest pipe peak over the factor on the force [m], for every force and every disturbance.
     unverified : tuple of str
     """
 
     pipe_peak: float
     relative_peak: float
-    error: float
+    disturbance: Disturbance
     frequency: float
     growth_rate: float
     detached: bool
@@ -70,27 +88,20 @@ class ExactJudgement:
         return self.growth_rate < 0
 
 
-def disturbed(system: System, error: float = 1.0, force: float = 1.0) -> System:
-    """The system with the pipe's frequency off by a factor, the lift in proportion to its square, times `force`."""
-    if error == 1.0 and force == 1.0:
-        return system
-    return with_parameters(system, pipe_frequency=error * system.reference_frequency, force=error**2 * force)
-
-
 def exact_judgement(
-    system: System, windows: Windows, errors: Sequence[float], forces: Sequence[float] = (1.0,)
+    system: System, windows: Windows, disturbances: Sequence[Disturbance], forces: Sequence[float] = (1.0,)
 ) -> ExactJudgement:
-    """All periodic responses of a design under all frequency errors, with the first of the forces and with the others.
+    """All periodic responses of a design under all disturbances, with the first of the forces and with the others.
 
     A response that jumps up before the force has its margin shows in `peaks`.
     """
-    looks = [_look(system, windows, error, force) for force in forces for error in errors]
-    given = looks[: len(errors)]
+    looks = [_look(system, windows, one, force) for force in forces for one in disturbances]
+    given = looks[: len(disturbances)]
     worst = max(given, key=lambda look: look.pipe_peak)
     return ExactJudgement(
         pipe_peak=worst.pipe_peak,
         relative_peak=max(look.relative_peak for look in given),
-        error=worst.error,
+        disturbance=worst.disturbance,
         frequency=worst.frequency,
         growth_rate=max(look.growth_rate for look in looks),
         detached=any(look.detached for look in given),
@@ -99,16 +110,16 @@ def exact_judgement(
     )
 
 
-def _look(system: System, windows: Windows, error: float, force: float) -> ExactJudgement:
-    window, wide = windows.at(error)
-    curve = frequency_response(disturbed(system, error, force), frequency=wide)
+def _look(system: System, windows: Windows, disturbance: Disturbance, force: float) -> ExactJudgement:
+    window, _ = windows.at(disturbance)
+    curve = windows.curve(system, disturbance.at_force(force))
     inside = (curve.frequency >= window[0]) & (curve.frequency <= window[1])
     peak = np.where(inside, curve.pipe_peak, -1.0)
     index = int(np.argmax(peak))
     return ExactJudgement(
         pipe_peak=float(peak[index]),
         relative_peak=float(np.max(np.where(inside, curve.relative_peak, 0.0))),
-        error=float(error),
+        disturbance=disturbance,
         frequency=float(curve.frequency[index]),
         growth_rate=_growth(curve, inside),
         detached=has_detached(curve),
@@ -123,22 +134,22 @@ def has_detached(curve: ResponseCurve) -> bool:
 
 
 def exact_birth(
-    system: System, windows: Windows, errors: Sequence[float], guess: float, most: float
+    system: System, windows: Windows, disturbances: Sequence[Disturbance], guess: float, most: float
 ) -> tuple[float, float]:
     """Largest factor on the force known to be without, and least known to be with a detached curve, around a guess.
 
     Bisected to a thousandth; (most, inf) if none is met up to `most`. Starts from the guess, so that a detached curve
-    that ends again at more force is not stepped over if the guess is near its birth. The first error is the one
+    that ends again at more force is not stepped over if the guess is near its birth. The first disturbance is the one
     expected to be critical; the others are asked at the end.
     """
 
-    def detached(error: float, force: float) -> bool:
-        return has_detached(frequency_response(disturbed(system, error, force), frequency=windows.at(error)[1]))
+    def detached(one: Disturbance, force: float) -> bool:
+        return has_detached(windows.curve(system, one.at_force(force)))
 
-    critical = errors[0]
-    for _ in range(len(errors)):
-        free, taken = _bisected(lambda force, error=critical: detached(error, force), guess, most)  # type: ignore[misc]
-        other = next((error for error in errors if error != critical and detached(error, free)), None)
+    critical = disturbances[0]
+    for _ in range(len(disturbances)):
+        free, taken = _bisected(lambda force, one=critical: detached(one, force), guess, most)  # type: ignore[misc]
+        other = next((one for one in disturbances if one != critical and detached(one, free)), None)
         if other is None or free == 0.0:
             break
         critical, guess = other, free

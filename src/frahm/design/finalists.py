@@ -16,8 +16,9 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.design.absorber import DesignedAbsorber
+from frahm.design.disturbance import Disturbance
 from frahm.design.exact import ExactJudgement, Windows, exact_birth, exact_judgement
-from frahm.design.search import BIRTH, CEILING, GROWTH, PEAKS, STROKE, Corrections, Limits, TierOne, predicted_peaks
+from frahm.design.search import BIRTH, GROWTH, PEAKS, STROKE, Corrections, Limits, TierOne
 from frahm.systems import System
 
 _ROUNDS = 6
@@ -37,7 +38,7 @@ class Finalist:
     ----------
     design : DesignedAbsorber
     predicted : float
-        Worst pipe peak expected of all attractors [m].
+        Value of the objective expected of all attractors.
     exact : ExactJudgement
     force_margin : float
         Largest factor on the force up to which no detached curve was met [-].
@@ -61,7 +62,7 @@ def finalists(
     tier: TierOne,
     system_of: Callable[[DesignedAbsorber], System],
     windows: Windows,
-    errors: Sequence[float],
+    disturbances: Sequence[Disturbance],
     limits: Limits,
     report: Callable[[Finalist], None] = lambda finalist: None,
 ) -> tuple[list[Finalist], list[str]]:
@@ -81,10 +82,11 @@ def finalists(
                 break
             row, _ = found
             judged = tier.judge(row[None])
-            finalist, birth = _judged(tier, row, judged, system_of, windows, errors, limits, corrections)
+            finalist, birth = _judged(tier, row, judged, system_of, windows, disturbances, limits, corrections)
             short = limits.force_margin - finalist.force_margin
             lazy = stable and finalist.exact.growth_rate > -0.5 * decay
             wide = finalist.exact.relative_peak > limits.stroke * 1.0005
+            wide |= limits.filling(row[None], np.array([finalist.exact.relative_peak]))[0] > 1
             if short <= 0 and not lazy and not wide and not finalist.exact.detached:
                 kept.append(finalist)
                 report(finalist)
@@ -93,7 +95,10 @@ def finalists(
             if kept and abs(finalist.predicted - last) < _SETTLED * last and short <= 0:
                 break
             last = finalist.predicted
-            corrections = _corrected(corrections, judged[0], finalist, birth, decay if stable else -math.inf)
+            corrections = _corrected(
+                corrections, judged[0], finalist, birth, decay if stable else -math.inf,
+                len(tier.screening.conditions.forces),
+            )  # fmt: skip
             # where the closed form has its detached curves too early, it must not be asked for the whole margin
             tier = tier.reloaded(limits.force_margin / corrections.birth)
     return sorted(kept, key=lambda finalist: finalist.predicted), list(dict.fromkeys(discarded))
@@ -101,33 +106,38 @@ def finalists(
 
 def _judged(
     tier: TierOne, row: Floats, judged: Floats, system_of: Callable[[DesignedAbsorber], System], windows: Windows,
-    errors: Sequence[float], limits: Limits, corrections: Corrections,
+    disturbances: Sequence[Disturbance], limits: Limits, corrections: Corrections,
 ) -> tuple[Finalist, float]:  # fmt: skip
     """The finalist, and the birth factor between what is known to be free and what is known not to be."""
     design = tier.space.absorber(row)
     system = system_of(design)
-    forces = sorted({1.0, limits.force_margin}) if row[2] else [1.0]
-    exact = exact_judgement(system, windows, errors, forces)
+    forces = sorted({1.0, limits.force_margin}) if design.nonlinear else [1.0]
+    exact = exact_judgement(system, windows, disturbances, forces)
     free, taken = math.inf, math.inf
-    if row[2]:
+    if design.nonlinear:
         guess = judged[0, BIRTH] * corrections.birth
         most = _FAR * limits.force_margin
-        order = np.argsort(tier.screening.births_by_error(row), kind="stable")
-        critical_first = [errors[i] for i in order]
+        order = np.argsort(tier.screening.births_by_disturbance(row), kind="stable")
+        critical_first = [disturbances[i] for i in order]
         free, taken = exact_birth(system, windows, critical_first, guess if math.isfinite(guess) else most, most)
-    as_exact = np.array([[0.0, exact.growth_rate, math.inf, judged[0, CEILING], max(exact.peaks)]])
-    predicted = float(predicted_peaks(as_exact, Limits(1.0, math.inf, False), Corrections())[0])
+    as_exact = judged.copy()
+    as_exact[0, GROWTH] = exact.growth_rate
+    rows = slice(PEAKS, PEAKS + len(tier.screening.conditions.forces))
+    as_exact[0, rows] = np.resize(exact.peaks, rows.stop - PEAKS)
+    predicted = float(tier.objective.over_scatter(tier.values(as_exact, Corrections()))[0])
     known = free if math.isinf(taken) else free - _MISSED
     return Finalist(design, predicted, exact, known, math.isinf(taken)), 0.5 * (free + taken)
 
 
-def _corrected(old: Corrections, judged: Floats, finalist: Finalist, birth: float, decay: float) -> Corrections:
+def _corrected(
+    old: Corrections, judged: Floats, finalist: Finalist, birth: float, decay: float, rows: int
+) -> Corrections:
     """Corrections that make the closed form agree with the exact equations at this design."""
     exact = finalist.exact
     known = math.isfinite(judged[BIRTH]) and not finalist.open_ended
     offset = exact.growth_rate - judged[GROWTH]
     return Corrections(
-        peaks=np.clip(np.resize(exact.peaks, judged[PEAKS:].shape) / judged[PEAKS:], *_TRUSTED),
+        peaks=np.clip(np.resize(exact.peaks, rows) / judged[PEAKS : PEAKS + rows], *_TRUSTED),
         stroke=exact.relative_peak / judged[STROKE],
         birth=(birth - 1.5 * _MISSED) / judged[BIRTH] if known else old.birth,
         damping=decay + offset if math.isfinite(decay) and math.isfinite(offset) else old.damping,

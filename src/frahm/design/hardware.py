@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 from frahm.case import Absorber, Case, PolynomialLaw
 from frahm.design.absorber import DesignedAbsorber
+from frahm.design.springs import ALLOWED_SHEAR, MOST_SPRING_STROKE, SPRING_INDEX, coil_springs
 from frahm.errors import check_number
 
 GRAVITY = 9.80665
-STEEL_MODULUS, SHEAR_MODULUS = 2.06e11, 7.9e10  # [Pa]
-MOST_SPRING_STROKE = 0.25  # of the free length: transverse springs are cubic within 4.5 % up to there
+STEEL_MODULUS = 2.06e11  # [Pa]
 MOST_WIRE_STROKE = 0.07  # of half the span
-SPRING_INDEX, ALLOWED_SHEAR = 8.0, 4.0e8  # of coil springs: mean over wire diameter [-], shear stress [Pa]
+ENDURANCE_SHEAR = 2.41e8  # amplitude of the shear stress that unpeened spring steel outlives [Pa]
 _YEAR = 365.25 * 86_400.0
 
 
@@ -54,14 +54,14 @@ def transverse_pair_ratio(stroke_over_length: float) -> float:
     return 2 * (1 - 1 / math.hypot(1.0, s)) / s**2
 
 
-def as_built(case: Case, design: DesignedAbsorber, stroke: float) -> Case:
+def as_built(case: Case, design: DesignedAbsorber, stroke: float, room: float | None = None) -> Case:
     """The case with the exact force of the transverse springs of the sheet in place of the cubic law.
 
     2 k_s y (1 - L/sqrt(L^2 + y^2)) = k3 y^3 (1 - 3/4 s^2 + 5/8 s^4 - ...) with s = y/L, L a quarter of which is the
-    stroke: three terms miss it by less than 2e-4 up to there, and stay a hardening spring beyond.
+    stroke, or the room there is: three terms miss it by less than 2e-4 up to there, and stay a hardening spring beyond.
     """
     host = case.pipe.mass
-    k3, length = host * design.kappa, stroke / MOST_SPRING_STROKE
+    k3, length = host * design.kappa, room or stroke / MOST_SPRING_STROKE
     odd = (1.0, -0.75 / length**2, 0.625 / length**4)
     coefficients = [host * design.linear, 0.0]
     for factor in odd:
@@ -69,13 +69,17 @@ def as_built(case: Case, design: DesignedAbsorber, stroke: float) -> Case:
     law = PolynomialLaw(coefficients=tuple(coefficients[:-1]), damping=host * design.xi2)
     old = case.absorbers[0] if case.absorbers else None
     kept = {} if old is None else {key: getattr(old, key) for key in old.model_fields_set}
-    new = Absorber(**(kept | {"mass": host * design.rho2, "law": law}))
+    place = {} if design.position is None else {"position": design.position}
+    new = Absorber(**(kept | place | {"mass": host * design.rho2, "law": law}))
     return Case(
         **({key: getattr(case, key) for key in case.model_fields_set} | {"absorbers": (new, *case.absorbers[1:])})
     )
 
 
-def hardware(case: Case, design: DesignedAbsorber, stroke: float, frequency: float) -> Hardware:
+def hardware(
+    case: Case, design: DesignedAbsorber, stroke: float, frequency: float, room: float | None = None,
+    stress: float | None = None,
+) -> Hardware:  # fmt: skip
     """Sheet of a design on a case.
 
     Parameters
@@ -86,6 +90,8 @@ def hardware(case: Case, design: DesignedAbsorber, stroke: float, frequency: flo
         Largest displacement between absorber and pipe, force margin included [m].
     frequency : float
         Excitation frequency at the worst [rad/s].
+    room, stress : float, optional
+        Free length of a transverse spring [m] and shear stress in it [Pa]; by default four times the stroke, 400 MPa.
 
     Returns
     -------
@@ -110,32 +116,39 @@ def hardware(case: Case, design: DesignedAbsorber, stroke: float, frequency: flo
         items.append(HardwareItem("linear stiffness", k1, "N/m", "linear times the mass of the pipe"))
     if k3:
         items.append(HardwareItem("cubic stiffness", k3, "N/m^3", "kappa times the mass of the pipe"))
-        items += _transverse_springs(k1, k3, stroke, frequency)
+        items += _transverse_springs(k1, k3, stroke, frequency, room, stress)
         items += _wires(k1, k3, stroke)
     sag = _sag(mass * GRAVITY, k1, k3)
     items.append(HardwareItem("sag if gravity acts along the motion", sag, "m", "k1 s + k3 s^3 = m g"))
     return Hardware(tuple(items), _warnings(design, stroke, sag))
 
 
-def _transverse_springs(k1: float, k3: float, stroke: float, frequency: float) -> list[HardwareItem]:
-    length = stroke / MOST_SPRING_STROKE
-    stiffness = k3 * length**2
-    extension = math.hypot(length, stroke) - length
-    pretension = 0.5 * k1 * length
-    force = stiffness * extension + pretension
-    wahl = (4 * SPRING_INDEX - 1) / (4 * SPRING_INDEX - 4) + 0.615 / SPRING_INDEX
-    wire = math.sqrt(8 * force * SPRING_INDEX * wahl / (math.pi * ALLOWED_SHEAR))
-    coils = SHEAR_MODULUS * wire / (8 * SPRING_INDEX**3 * stiffness)
+def _transverse_springs(
+    k1: float, k3: float, stroke: float, frequency: float, room: float | None, stress: float | None
+) -> list[HardwareItem]:
+    springs = [float(value) for value in coil_springs(k1, k3, stroke, room, stress)]
+    length, stiffness, extension, pretension, force, wire, coils, solid = springs
+    top = ALLOWED_SHEAR if stress is None else stress
+    swing = 0.5 * top * (1 - pretension / force)
+    origin = "stroke over 0.25: force within 4.5 % of cubic" if room is None else "the room given"
     items = [
-        HardwareItem("spring free length L, each side", length, "m", "stroke over 0.25: force within 4.5 % of cubic"),
+        HardwareItem("spring free length L, each side", length, "m", origin),
         HardwareItem("spring stiffness k_s, each side", stiffness, "N/m", "k3 L^2"),
         HardwareItem("spring extension at the stroke", extension, "m", "sqrt(L^2 + z^2) - L"),
         HardwareItem("spring force at the stroke", force, "N", "k_s times extension, with pretension"),
         HardwareItem("exact over cubic force at the stroke", transverse_pair_ratio(stroke / length), "-", "exact law"),
-        HardwareItem("coil spring wire diameter", wire, "m", "shear stress 400 MPa, spring index 8 (secondary)"),
+        HardwareItem(
+            "coil spring wire diameter", wire, "m", f"shear stress {top / 1e6:g} MPa, C = {SPRING_INDEX:g} (secondary)"
+        ),
         HardwareItem("coil spring active coils", coils, "-", "G d/(8 C^3 k_s) (secondary)"),
+        HardwareItem("coil spring solid over free length", solid / length, "-", "(n + 2) d/L: below 1 it fits"),
         HardwareItem("spring extensions a year", 2 * frequency / (2 * math.pi) * _YEAR, "-", "two a cycle, all year"),
-    ]
+        HardwareItem("shear stress amplitude in the springs", swing, "Pa", "half of what the stroke adds"),
+        HardwareItem(
+            "spring fatigue: amplitude over endurance", swing / ENDURANCE_SHEAR, "-",
+            "241 MPa, unpeened spring steel by Zimmerli (secondary): below 1 it outlives any number of cycles",
+        ),
+    ]  # fmt: skip
     if k1:
         items.append(HardwareItem("pretension for the linear part", pretension, "N", "T0 = k1 L/2, at length L"))
     return items
@@ -178,6 +191,10 @@ def _warnings(design: DesignedAbsorber, stroke: float, sag: float) -> tuple[str,
             " breaks the symmetry the design relies on: let it move horizontally, or carry it by a counter-spring."
         )
     warnings.append("On a vertical pipe the direction of the wind varies: the device must work in two directions.")
+    if design.quintic:
+        warnings.append(
+            "Two transverse springs have no stiffness of the fifth power: it needs a cam, a shaped spring, or a stop."
+        )
     if design.kappa:
         warnings.append("The springs stretch twice a cycle: their fatigue counts twice the cycles of the pipe.")
     return tuple(warnings)

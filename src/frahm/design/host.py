@@ -12,39 +12,64 @@ where g is the force of the absorber on the structure. This is exact for any num
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frahm.arrays import Complexes, Floats
+from frahm.design.disturbance import Disturbance
 from frahm.errors import ParameterError
 from frahm.systems import System
+
+Lift = Callable[[Floats], Floats]
 
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Excitations a design is judged under: rows are pairs of frequency error and force, columns frequencies.
+    """Excitations a design is judged under: rows are pairs of disturbance and force, columns frequencies.
 
     Attributes
     ----------
-    errors : ndarray, shape (R,)
-        r: natural frequency of the pipe over the one it was designed for [-].
+    disturbances : tuple of Disturbance, length D
+        The rows go through all of them at the first force, then at the next.
     forces : ndarray, shape (R,)
         Factors on the force [-].
     frequency : ndarray, shape (R, W)
         Omega [rad/s], ascending in a row.
     a, u, b, x : ndarray of complex, shape (R, W)
         Receptances and free displacements, see above [m/N, m].
+    absorber : ndarray, shape (R, 2)
+        Factors on spring and damper of the absorber [-].
     """
 
-    errors: Floats
+    disturbances: tuple[Disturbance, ...]
     forces: Floats
     frequency: Floats
     a: Complexes
     u: Complexes
     b: Complexes
     x: Complexes
+    absorber: Floats
+
+    @property
+    def arrays(self) -> tuple[Floats, Complexes, Complexes, Complexes, Complexes, Floats]:
+        """What the kernels take."""
+        return self.frequency, self.a, self.u, self.b, self.x, self.absorber
+
+    @property
+    def pipe_frequencies(self) -> Floats:
+        """Frequency of the pipe over the nominal one in every row [-]."""
+        return self._row("pipe_frequency")
+
+    @property
+    def pipe_dampings(self) -> Floats:
+        """Damping ratio of the pipe over the nominal one in every row [-]."""
+        return self._row("pipe_damping")
+
+    def _row(self, name: str) -> Floats:
+        values = np.array([getattr(one, name) for one in self.disturbances])
+        return np.tile(values, len(self.forces) // len(values))
 
     def reloaded(self, margin: float) -> Conditions:
         """The same with another factor on the force where it is not 1."""
@@ -111,32 +136,50 @@ class Host:
 
     def conditions(
         self,
-        errors: Sequence[float],
+        disturbances: Sequence[Disturbance],
         window: tuple[float, float],
         count: int,
         *,
         moving: bool = True,
         forces: Sequence[float] = (1.0,),
+        lift: Lift | None = None,
     ) -> Conditions:
         """Conditions over a window of Omega [rad/s], `count` frequencies denser around the resonance.
 
-        With `moving` the window moves with the frequency of the pipe. Rows: all errors at the first force, and so on.
+        With `moving` the window moves with the frequency of the pipe. `lift` is a factor on the force over Omega.
         """
-        factors, loads = np.tile(np.asarray(errors, dtype=float), len(forces)), np.repeat(forces, len(errors))
-        grid = [_dense_grid(*_moved(window, r, moving), self.frequency * r, count) for r in factors]
-        tables = zip(*(self.receptances(row, float(r)) for row, r in zip(grid, factors, strict=True)), strict=True)
-        a, u, b, x = (np.array(table) for table in tables)
-        return Conditions(factors, loads, np.array(grid), a, loads[:, None] * u, b, loads[:, None] * x)
+        rows = [
+            _dense_grid(*_moved(window, d.pipe_frequency, moving), self.frequency * d.pipe_frequency, count)
+            for d in disturbances
+        ]
+        return self.conditions_at(disturbances, np.array(rows), forces, lift)
 
-    def receptances(self, frequency: Floats, error: float = 1.0) -> tuple[Complexes, Complexes, Complexes, Complexes]:
-        """a, u_F, b, x_F at frequencies (W,) of a pipe whose natural frequency is off by a factor.
+    def conditions_at(
+        self,
+        disturbances: Sequence[Disturbance],
+        frequency: Floats,
+        forces: Sequence[float] = (1.0,),
+        lift: Lift | None = None,
+    ) -> Conditions:
+        """Conditions at frequencies (D, W) [rad/s], a row for every disturbance."""
+        found = [self.receptances(row, d) for row, d in zip(frequency, disturbances, strict=True)]
+        a, u, b, x = (np.tile(np.array(table), (len(forces), 1)) for table in zip(*found, strict=True))
+        absorber = np.tile([(d.kappa, d.xi2) for d in disturbances], (len(forces), 1))
+        factors = np.repeat(np.asarray(forces, dtype=float), len(disturbances))
+        grid = np.tile(frequency, (len(forces), 1))
+        load = factors[:, None] * (1.0 if lift is None else lift(grid))
+        return Conditions(tuple(disturbances), factors, grid, a, load * u, b, load * x, absorber)
 
-        The damping ratio is kept, and the force is that of lock-in, in proportion to the squared frequency.
-        """
-        W = np.asarray(frequency)[:, None, None]
-        D = error**2 * self.stiffness + 1j * W * error * self.damping - W**2 * self.mass
-        force = error**2 * self.forcing
-        sides = np.linalg.solve(D, np.broadcast_to(np.column_stack([self.attachment, force]), (len(W), len(force), 2)))
+    def receptances(
+        self, frequency: Floats, disturbance: Disturbance | None = None
+    ) -> tuple[Complexes, Complexes, Complexes, Complexes]:
+        """a, u_F, b, x_F at frequencies (W,) of the pipe under a disturbance."""
+        d = disturbance or Disturbance()
+        W = frequency[:, None, None]
+        damping = d.pipe_frequency * d.pipe_damping * self.damping
+        D = d.pipe_frequency**2 * self.stiffness - W * W * self.mass + 1j * W * damping
+        force = np.column_stack([self.attachment, d.load * self.forcing]).astype(complex)
+        sides = np.linalg.solve(D, np.broadcast_to(force, (len(frequency), *force.shape)))
         at = np.asarray(self.attachment @ sides, dtype=complex)
         out = np.asarray(self.output @ sides, dtype=complex)
         return at[:, 0], at[:, 1], out[:, 0], out[:, 1]

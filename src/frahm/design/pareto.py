@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from typing import TYPE_CHECKING
 
@@ -10,8 +9,10 @@ import numpy as np
 
 from frahm.arrays import Floats, labelled
 from frahm.case import Case, load_case
-from frahm.design.absorber import DesignedAbsorber, with_design
+from frahm.design.absorber import UNITS, DesignedAbsorber, with_design
+from frahm.design.disturbance import Disturbance
 from frahm.design.host import host_of
+from frahm.design.problem import WIDE
 from frahm.design.screening import Screening
 from frahm.design.settings import DesignSettings
 from frahm.design.space import design_space
@@ -81,45 +82,34 @@ def _searched(
         hint = "Install it with: pip install 'frahm[uq]'."
         raise ParameterError("pareto_front", "pymoo is missing", "the package pymoo", hint=hint) from None
     host = host_of(build_system(with_design(case, DesignedAbsorber(masses[0], 0.0, 1.0, 0.0))))
-    omega = host.frequency
+    omega, nominal = host.frequency, [Disturbance()]
     window = (omega + case.analysis.detuning[0], omega + case.analysis.detuning[1])
     screening = Screening(
         host,
-        host.conditions([1.0], window, _POINTS, moving=False),
-        host.conditions([1.0], (0.7 * omega, 1.3 * omega), _WIDE_POINTS),
+        host.conditions(nominal, window, _POINTS, moving=False),
+        host.conditions(nominal, (WIDE[0] * omega, WIDE[1] * omega), _WIDE_POINTS),
     )
-    # the box scales with the mass: every design is taken from the box of its own
-    boxes = [
-        design_space(host, case.pipe.mass, settings.family, dataclasses.replace(settings, mass_ratio=m)) for m in masses
-    ]
-
-    def designs(unit: Floats) -> Floats:
-        share = unit[:, :1]
-        ends = [box.lo + unit[:, 1:] * (box.hi - box.lo) for box in boxes]
-        values = ends[0] + share * (ends[1] - ends[0])
-        found = boxes[0].of_values(values)
-        found[:, 0] = boxes[0].mass * (boxes[1].mass / boxes[0].mass) ** share[:, 0]
-        return found
+    space = design_space(host, case.pipe.mass, settings.family, settings.changed(mass_ratio=masses))
 
     def judged(rows: Floats) -> tuple[Floats, Floats]:
         peaks, others = screening.responses(rows)
         objectives = np.column_stack([peaks[:, 0], rows[:, 0], others[:, 0]])
         births = np.minimum(screening.births(rows), 10.0)
-        limit = settings.stroke or math.inf
+        limit = settings.most_stroke
         stroke = np.minimum(others[:, 0] - limit, 1.0) if math.isfinite(limit) else np.full(len(rows), -1.0)
         return objectives, np.column_stack([settings.force_margin - births, others[:, 1], stroke])
 
     class Designs(Problem):
         def __init__(self) -> None:
-            super().__init__(n_var=1 + boxes[0].size, n_obj=3, n_ieq_constr=3, xl=0.0, xu=1.0)
+            super().__init__(n_var=space.size, n_obj=3, n_ieq_constr=3, xl=0.0, xu=1.0)
 
         def _evaluate(self, x: Floats, out: dict, *args: object, **kwargs: object) -> None:
-            out["F"], out["G"] = judged(designs(np.asarray(x)))
+            out["F"], out["G"] = judged(space.designs(np.asarray(x)))
 
     result = minimize(Designs(), NSGA2(pop_size=population), ("n_gen", generations), seed=settings.seed)
     if result.X is None:
         raise ParameterError("limits", f"force margin {settings.force_margin:g}", "limits that a design can keep")
-    return designs(np.atleast_2d(result.X)), np.atleast_2d(result.F)[:, [0, 2]]
+    return space.designs(np.atleast_2d(result.X)), np.atleast_2d(result.F)[:, [0, 2]]
 
 
 def _dataset(case: Case, rows: Floats, judged: Floats) -> xr.Dataset:
@@ -127,10 +117,9 @@ def _dataset(case: Case, rows: Floats, judged: Floats) -> xr.Dataset:
 
     from frahm import __version__
 
-    units = {"rho2": "1", "linear": "1/s^2", "kappa": "1/(m^2 s^2)", "xi2": "1/s"}
     variables = {
         name: labelled("design", rows[:, column], f"{name} over mass of the pipe", unit)
-        for column, (name, unit) in enumerate(units.items())
+        for column, (name, unit) in enumerate(UNITS.items())
     }
     variables["pipe_amplitude"] = labelled("design", judged[:, 0], "largest first-harmonic pipe amplitude", "m")
     variables["relative_amplitude"] = labelled("design", judged[:, 1], "largest first-harmonic stroke", "m")

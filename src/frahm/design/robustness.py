@@ -10,7 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frahm.design.absorber import DesignedAbsorber
+from frahm.design.disturbance import Disturbance
 from frahm.design.exact import Windows, exact_judgement
+from frahm.design.objective import Objective
 from frahm.design.screening import Screening
 from frahm.design.verification import glimpse
 from frahm.systems import System
@@ -19,7 +21,7 @@ TOLERANCES = (0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.1, 0.15)
 SLACK = 1.1  # the guarantee holds while the worst peak stays within ten per cent of the promise
 _STEP = 0.02
 _GLIMPSE_SAMPLES, _GLIMPSE_PERIODS = 16, 2000
-_PARAMETERS = ("rho2", "linear", "kappa", "xi2")
+_PARAMETERS = ("rho2", "linear", "kappa", "xi2", "quintic")
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ class Sensitivity:
 
 def tolerance_band(
     design: DesignedAbsorber, promise: float, system_of: Callable[[DesignedAbsorber], System], windows: Windows,
-    errors: Sequence[float], seed: int,
+    disturbances: Sequence[Disturbance], seed: int,
 ) -> ToleranceBand:  # fmt: skip
     """The band by exact responses at all corners, held against attractors at the worst corner."""
     kept = (0.0, promise, design)
@@ -67,7 +69,7 @@ def tolerance_band(
     for tolerance in TOLERANCES:
         found = []
         for corner in corners(design, tolerance):
-            exact = exact_judgement(system_of(corner), windows, errors)
+            exact = exact_judgement(system_of(corner), windows, disturbances)
             found.append((exact.pipe_peak, corner, exact.detached))
         peak, worst, _ = max(found, key=lambda item: item[0])
         if any(detached for _, _, detached in found):
@@ -79,8 +81,10 @@ def tolerance_band(
         kept = tolerance, peak, worst
     tolerance, peak, worst = kept
     seen = [
-        glimpse(system_of(worst), windows, error, samples=_GLIMPSE_SAMPLES, seed=seed, periods=_GLIMPSE_PERIODS)
-        for error in errors
+        glimpse(
+            system_of(worst), windows, one, Objective(), samples=_GLIMPSE_SAMPLES, seed=seed, periods=_GLIMPSE_PERIODS
+        )
+        for one in disturbances
     ]
     agree = all(item.verified for item in seen) and max(item.pipe_peak for item in seen) <= SLACK * promise
     return ToleranceBand(tolerance, peak, worst, agree, breaks)
@@ -99,7 +103,7 @@ def corners(design: DesignedAbsorber, tolerance: float) -> list[DesignedAbsorber
 
 def sensitivities(
     design: DesignedAbsorber, system_of: Callable[[DesignedAbsorber], System], windows: Windows,
-    errors: Sequence[float], screening: Screening, host_mass: float,
+    disturbances: Sequence[Disturbance], screening: Screening, host_mass: float,
 ) -> tuple[Sensitivity, ...]:  # fmt: skip
     """Slopes over +-2 % of every parameter: peaks by the exact responses, births by the closed form."""
     found = []
@@ -108,9 +112,9 @@ def sensitivities(
         if not value:
             continue
         ends = [replace(design, **{name: value * (1 + sign * _STEP)}) for sign in (-1, 1)]
-        low, high = (exact_judgement(system_of(end), windows, errors).pipe_peak for end in ends)
+        low, high = (exact_judgement(system_of(end), windows, disturbances).pipe_peak for end in ends)
         rows = np.array([[host_mass * getattr(end, key) for key in _PARAMETERS] for end in ends])
-        births = screening.births(rows) if design.kappa else np.array([math.inf, math.inf])
+        births = screening.births(rows) if design.nonlinear else np.array([math.inf, math.inf])
         slope = math.log(births[1] / births[0]) / (2 * _STEP) if np.all(np.isfinite(births)) else math.nan
         found.append(Sensitivity(name, math.log(high / low) / (2 * _STEP), slope))
     return tuple(found)

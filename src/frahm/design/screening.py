@@ -12,14 +12,17 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.design.host import Conditions, Host
-from frahm.design.kernels import births, largest_responses, screened
+from frahm.design.kernels import amplitude_tables, births, largest_responses, screened
+from frahm.design.objective import ClimateMean
 
 _BATCH = 2000
 
 
 @dataclass(frozen=True, eq=False)
 class Screening:
-    """A host under conditions, ready to be asked about designs (D, 4): m [kg], k1 [N/m], k3 [N/m^3], c [N s/m].
+    """A host under conditions, ready to be asked about designs (D, 5).
+
+    A design is m [kg], k1 [N/m], k3 [N/m^3], c [N s/m], k5 [N/m^5].
 
     Attributes
     ----------
@@ -28,6 +31,8 @@ class Screening:
         Where the response counts.
     wide : Conditions
         Where detached curves are looked for; finer, because their range can be narrow.
+    climate : ClimateMean, optional
+        Mean over the wind climate, if one is asked for.
     workers : int, optional
         Threads; one per core by default.
     """
@@ -35,6 +40,7 @@ class Screening:
     host: Host
     conditions: Conditions
     wide: Conditions
+    climate: ClimateMean | None = None
     workers: int | None = None
 
     def largest_pipe_amplitudes(self, designs: Floats, limit: float = math.inf) -> Floats:
@@ -46,42 +52,60 @@ class Screening:
         c = self.conditions
 
         def run(part: slice) -> None:
-            largest_responses(c.frequency, c.a, c.u, c.b, c.x, designs[part], limit, found[part])
+            largest_responses(*c.arrays, designs[part], limit, found[part])
 
         self._in_threads(run, len(designs))
         return found
 
     def births(self, designs: Floats) -> Floats:
         """Least factor on the force [-] at which a detached curve is born, shape (D,); infinite where none is."""
-        found = np.empty(len(designs))
+        found, wide = np.empty(len(designs)), self.wide
 
         def run(part: slice) -> None:
-            births(self.wide.frequency, self.wide.a, self.wide.u, designs[part], found[part])
+            births(wide.frequency, wide.a, wide.u, wide.absorber, designs[part], found[part])
 
         self._in_threads(run, len(designs))
         return found
 
-    def births_by_error(self, design: Floats) -> Floats:
-        """Least factor on the force [-] at which one design (4,) has a detached curve, for every frequency error."""
-        found = np.empty((len(self.wide.errors), 1))
+    def births_by_disturbance(self, design: Floats) -> Floats:
+        """Least factor on the force [-] at which one design (5,) has a detached curve, for every disturbance."""
+        wide = self.wide
+        found = np.empty((len(wide.disturbances), 1))
         for row, into in enumerate(found):
             part = slice(row, row + 1)
-            births(self.wide.frequency[part], self.wide.a[part], self.wide.u[part], design[None], into)
+            births(wide.frequency[part], wide.a[part], wide.u[part], wide.absorber[part], design[None], into)
         return found[:, 0]
 
     def responses(self, designs: Floats) -> tuple[Floats, Floats]:
-        """Largest pipe amplitude [m] at every frequency error, (D, R); largest |Z| [m] and growth [1/s], (D, 2)."""
+        """Largest pipe amplitude [m] in every row, (D, R); largest |Z| [m] and growth [1/s], (D, 2)."""
         found = np.empty((len(designs), 2))
-        peaks = np.empty((len(designs), len(self.conditions.errors)))
+        peaks = np.empty((len(designs), len(self.conditions.forces)))
         c, host = self.conditions, self.host
-        mode = np.empty((len(c.errors), 3))
-        mode[:, 0], mode[:, 1], mode[:, 2] = host.frequency * c.errors, host.modal_damping * c.errors, host.modal_mass
+        mode = np.empty((len(c.forces), 3))
+        mode[:, 0] = host.frequency * c.pipe_frequencies
+        mode[:, 1] = host.modal_damping * c.pipe_frequencies * c.pipe_dampings
+        mode[:, 2] = host.modal_mass
 
         def run(part: slice) -> None:
-            screened(c.frequency, c.a, c.u, c.b, c.x, mode, designs[part], found[part], peaks[part])
+            screened(*c.arrays, mode, designs[part], found[part], peaks[part])
 
         self._in_threads(run, len(designs))
         return peaks, found
+
+    def climate_means(self, designs: Floats) -> Floats:
+        """Means over the wind climate, (D, disturbances)."""
+        mean = self.climate
+        if mean is None:
+            return np.empty((len(designs), 0))
+        found = np.empty((len(designs), len(mean.conditions.disturbances)))
+
+        def run(part: slice) -> None:
+            tables = np.empty((part.stop - part.start, *mean.conditions.frequency.shape))
+            amplitude_tables(*mean.conditions.arrays, designs[part], tables)
+            found[part] = mean.means(tables)
+
+        self._in_threads(run, len(designs))
+        return found
 
     def _in_threads(self, run: Callable[[slice], None], count: int) -> None:
         parts = [slice(at, min(at + _BATCH, count)) for at in range(0, count, _BATCH)]
@@ -97,16 +121,18 @@ def fold_ceilings(screening: Screening, designs: Floats) -> Floats:
     """Largest |x| [m] the slow manifold admits at resonance before the motion jumps, shape (D,); NaN without a fold.
 
     m Omega^2 X = (k1 - m Omega^2 + n + i Omega c) Z has folds where 3 n^2 + 4 p n + p^2 + q^2 = 0 with
-    p = k1 - m Omega^2 and q = Omega c: the smaller root is the upper fold of the pipe. The largest over all frequency
-    errors is taken.
+    p = k1 - m Omega^2 and q = Omega c, n = 3/4 k3 |Z|^2: the smaller root is the upper fold of the pipe. The largest
+    over all disturbances is taken. A part of the fifth power is left out.
     """
-    m, k1, k3, damper = designs.T[:, None, :]
-    W = screening.host.frequency * screening.conditions.errors[:, None]
-    p, q = k1 - m * W * W, W * damper
+    conditions = screening.conditions
+    m, k1, k3, damper, _ = designs.T[:, None, :]
+    springs, dampers = conditions.absorber.T[:, :, None]
+    W = screening.host.frequency * conditions.pipe_frequencies[:, None]
+    p, q = springs * k1 - m * W * W, W * dampers * damper
     inside = p * p - 3 * q * q
     folded = (k3 > 0) & (p < 0) & (inside > 0)
     n = (-2 * p - np.sqrt(np.where(folded, inside, 0.0))) / 3
-    Z = np.sqrt(np.where(folded, n / np.where(k3 > 0, 0.75 * k3, 1.0), 0.0))
+    Z = np.sqrt(np.where(folded, n / np.where(k3 > 0, 0.75 * springs * k3, 1.0), 0.0))
     ceilings = screening.host.output_ratio * Z * np.hypot(p + n, q) / (m * W * W)
     largest = np.max(np.where(folded, ceilings, 0.0), axis=0)
     return np.where(np.any(folded, axis=0), largest, np.nan)

@@ -9,17 +9,21 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import qmc
 
 from frahm.arrays import Floats
+from frahm.design.objective import Objective
 from frahm.design.screening import Screening, fold_ceilings
-from frahm.design.space import DesignSpace
+from frahm.design.space import CUBIC, LINEAR, DesignSpace
+from frahm.design.springs import coil_springs
 
-STROKE, GROWTH, BIRTH, CEILING, PEAKS = 0, 1, 2, 3, 4  # columns of what is judged
+STROKE, GROWTH, BIRTH, CEILING, SPRINGS, PEAKS = range(6)  # columns of what is judged
 _GRID = {2: (72, 72), 3: (24, 30, 26)}
+_SOBOL = 2**14  # designs of the first look at more parameters
 _MEMBERS, _GENERATIONS, _SEED = 36, 80, 1
 _STARTS = 8
+_RESERVE = 1.05  # on the screened stroke, where springs must fit
 _APART = 0.08  # of the cube: starts are at least so far from one another
-_MODULATED = 1.08  # modulated peaks over the larger of the periodic one and the ceiling of the slow manifold
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +33,7 @@ class Corrections:
     Attributes
     ----------
     peaks : ndarray, shape (R,), or float
-        Exact pipe peak over screened amplitude at every frequency error [-].
+        Exact pipe peak over screened amplitude in every row of the conditions [-].
     stroke : float
         Exact stroke over screened amplitude [-].
     birth : float
@@ -46,11 +50,32 @@ class Corrections:
 
 @dataclass(frozen=True)
 class Limits:
-    """What a design must keep: the force margin [-], the stroke [m] and whether it must be stable everywhere."""
+    """What a design must keep.
+
+    Attributes
+    ----------
+    force_margin : float
+        Factor on the force without detached curve [-].
+    stroke : float
+        [m].
+    stable : bool
+        Whether every response must be stable.
+    room, stress : float, optional
+        Free length of a transverse spring [m], and shear stress [Pa] at which coil springs must fit into it.
+    """
 
     force_margin: float
     stroke: float
     stable: bool
+    room: float | None = None
+    stress: float | None = None
+
+    def filling(self, designs: Floats, stroke: Floats) -> Floats:
+        """Share (D,) of their free length that the coils of transverse springs of designs (D, 5) take [-]."""
+        if self.stress is None:
+            return np.zeros(len(designs))
+        springs = coil_springs(designs[:, LINEAR], designs[:, CUBIC], stroke, self.room, self.stress)
+        return np.where(designs[:, CUBIC] > 0, springs.solid / springs.length, 0.0)
 
 
 @dataclass(eq=False)
@@ -59,21 +84,48 @@ class TierOne:
 
     screening: Screening
     space: DesignSpace
+    objective: Objective
+    limits: Limits
     count: int = 0
 
     def __post_init__(self) -> None:
-        axes = [np.linspace(0.0, 1.0, n) for n in _GRID[self.space.size]]
-        self.grid = np.array(list(itertools.product(*axes)))
+        if self.space.size in _GRID:
+            axes = [np.linspace(0.0, 1.0, n) for n in _GRID[self.space.size]]
+            self.grid = np.array(list(itertools.product(*axes)))
+            self.step = 1.0 / (np.array(_GRID[self.space.size]) - 1)
+        else:
+            self.grid = qmc.Sobol(self.space.size, seed=_SEED).random(_SOBOL)
+            self.step = np.full(self.space.size, _SOBOL ** (-1 / self.space.size))
         designs = self.space.designs(self.grid)
         self.grid_judged = self.judge(designs)
 
     def judge(self, designs: Floats) -> Floats:
-        """Stroke [m], growth [1/s], birth [-], ceiling [m], then pipe amplitudes over the force [m]: (D, 4 + R)."""
+        """Stroke [m], growth [1/s], birth [-], ceiling [m], filling of the springs [-], pipe amplitudes over the force
+        [m] in all R rows, climate means of all disturbances: (D, 5 + R + C).
+        """  # noqa: D205
         self.count += len(designs)
         screening = self.screening
         births, ceilings = screening.births(designs), fold_ceilings(screening, designs)
         peaks, others = screening.responses(designs)
-        return np.column_stack([others, births, ceilings, peaks / screening.conditions.forces])
+        filling = self.limits.filling(designs, _RESERVE * others[:, 0])
+        means = screening.climate_means(designs)
+        return np.column_stack([others, births, ceilings, filling, peaks / screening.conditions.forces, means])
+
+    def predicted(self, judged: Floats, limits: Limits, corrections: Corrections) -> Floats:
+        """Value of the objective expected of judged designs, (D,); infinite where a limit is not kept."""
+        birth, stroke, stable, springs = _kept(judged, limits, corrections)
+        values = self.values(judged, corrections)
+        return np.where(birth & stroke & stable & springs, self.objective.over_scatter(values), np.inf)
+
+    def values(self, judged: Floats, corrections: Corrections) -> Floats:
+        """Values of the objective under every disturbance, expected of judged designs (D, ...)."""
+        conditions, unstable = self.screening.conditions, judged[:, GROWTH] > 0
+        rows = PEAKS + len(conditions.forces)
+        if self.objective.over_climate:
+            return self.objective.of_means(judged[:, rows:], unstable)
+        # a response that jumps before the force has its margin shows at the larger force
+        by_force = (corrections.peaks * judged[:, PEAKS:rows]).reshape(len(judged), -1, len(conditions.disturbances))
+        return self.objective.of_peaks(by_force.max(axis=1), unstable, np.nan_to_num(judged[:, CEILING]))
 
     def reloaded(self, margin: float) -> TierOne:
         """The same with another margin on the force, and the grid judged before to start from."""
@@ -83,20 +135,20 @@ class TierOne:
         return other
 
     def best(self, limits: Limits, corrections: Corrections) -> tuple[Floats, float] | None:
-        """Design (4,) with the least predicted pipe peak [m], and that peak; None if no design keeps the limits.
+        """Design (5,) with the least value expected, and that value; None if no design keeps the limits.
 
         Differential evolution from the best designs of the grid and the best that lie apart from them.
         """
         from scipy.optimize import differential_evolution
 
-        values = predicted_peaks(self.grid_judged, limits, corrections)
+        values = self.predicted(self.grid_judged, limits, corrections)
         members = self._members(values)
         if not len(members):
             return None
         worst = 10.0 * float(np.max(values[np.isfinite(values)]))
 
         def objective(units: Floats) -> Floats:
-            peaks = predicted_peaks(self.judge(self.space.designs(units.T)), limits, corrections)
+            peaks = self.predicted(self.judge(self.space.designs(units.T)), limits, corrections)
             return np.where(np.isfinite(peaks), peaks, worst)
 
         found = differential_evolution(
@@ -107,11 +159,12 @@ class TierOne:
 
     def binding(self, limits: Limits) -> str:
         """Which limit leaves no design: the one without which most designs remain."""
-        birth, stroke, stable = _kept(self.grid_judged, limits, Corrections())
+        birth, stroke, stable, springs = _kept(self.grid_judged, limits, Corrections())
         tests = {
             f"no detached curve up to {limits.force_margin:g} times the force": birth,
             f"stroke at most {limits.stroke:g} m": stroke,
             "a stable response everywhere": stable,
+            f"coil springs of {(limits.stress or 0) / 1e6:g} MPa that fit into their length": springs,
         }
         left = {
             name: int(np.sum(np.logical_and.reduce([t for other, t in tests.items() if other != name])))
@@ -131,30 +184,15 @@ class TierOne:
             if all(np.max(np.abs(self.grid[index] - self.grid[other])) > _APART for other in chosen):
                 chosen.append(index)
         chosen += [index for index in order[:_MEMBERS] if index not in chosen][: _MEMBERS - len(chosen)]
-        step = 1.0 / (np.array(_GRID[self.space.size]) - 1)
         members = self.grid[np.resize(chosen, _MEMBERS)]
-        off = np.random.default_rng(_SEED).uniform(-0.7, 0.7, members.shape) * step
+        off = np.random.default_rng(_SEED).uniform(-0.7, 0.7, members.shape) * self.step
         off[: len(chosen)] *= 0.3  # where few designs keep the limits, the copies of them must differ
         off[0] = 0.0
         return np.asarray(np.clip(members + off, 0.0, 1.0))
 
 
-def _kept(judged: Floats, limits: Limits, corrections: Corrections) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _kept(judged: Floats, limits: Limits, corrections: Corrections) -> tuple[np.ndarray, ...]:
     birth = judged[:, BIRTH] * corrections.birth >= limits.force_margin
     stroke = judged[:, STROKE] * corrections.stroke <= limits.stroke
     stable = judged[:, GROWTH] <= -corrections.damping if limits.stable else np.ones(len(judged), bool)
-    return birth, stroke, stable
-
-
-def predicted_peaks(judged: Floats, limits: Limits, corrections: Corrections) -> Floats:
-    """Predicted worst pipe peak [m] of judged designs (D, 4 + R); infinite where a limit is not kept.
-
-    Where a response is unstable, the modulated motion that takes its place is expected a little above the larger of
-    the periodic response and the ceiling of the slow manifold.
-    """
-    birth, stroke, stable = _kept(judged, limits, corrections)
-    peak = np.max(corrections.peaks * judged[:, PEAKS:], axis=1)
-    ceiling = np.nan_to_num(judged[:, CEILING])
-    unstable = judged[:, GROWTH] > 0
-    peak = np.where(unstable, _MODULATED * np.maximum(peak, ceiling), peak)
-    return np.where(birth & stroke & stable, peak, np.inf)
+    return birth, stroke, stable, judged[:, SPRINGS] <= 1.0

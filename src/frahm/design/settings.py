@@ -2,42 +2,54 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from typing import Any
 
-from frahm.design.absorber import FAMILIES
-from frahm.errors import ParameterError, check_choice, check_count, check_number
+from pydantic import ValidationError
 
-_RANGE_UNITS = {"linear": "1/s^2", "kappa": "1/(m^2 s^2)", "xi2": "1/s"}
-Range = tuple[float, float]
+from frahm.case import Case, Design
+from frahm.case.problems import parameter_error
+from frahm.errors import ParameterError, nearest
+
+_MASS_RATIO = 0.02  # of a case without absorber
 
 
-@dataclass(frozen=True)
-class DesignSettings:
-    """Settings of `design_absorber`.
+class DesignSettings(Design):
+    """Settings of `design_absorber`: the fields of the section `design` of a case, under the same names.
 
-    Parameters
+    Attributes
     ----------
-    mass_ratio : float
-        Mass of the absorber over that of the pipe [-].
-    family : str
-        "sink" (cubic spring alone), "tuned" (linear spring alone) or "mixed" (both).
-    scatter : float
-        The frequency of the pipe may be off by this fraction either way [-].
+    objective : {"peak", "rms", "expected", "damage"}
+        What is made as small as can be. "peak" and "rms": the largest of the pipe [m] over all attractors, frequencies
+        and scatter. "expected": mean pipe peak [m] over the wind climate and the basins of its attractors, while the
+        wind is in the band counted. "damage": fatigue damage over the wind climate [-], the worst attractor everywhere.
+    family : {"sink", "tuned", "mixed"}
+        Cubic spring alone, linear spring alone, or both.
+    mass_ratio : float or tuple of float, optional
+        Mass of the absorber over that of the pipe [-], or a range of it.
+    linear, kappa, quintic, xi2 : tuple of float, optional
+        Ranges (lo, hi) per mass of the pipe [1/s^2], [1/(m^2 s^2)], [1/(m^4 s^2)], [1/s]; by default wide ones that
+        scale with the pipe, and no quintic part.
+    position : tuple of float, optional
+        Range along an elastic pipe [m].
+    wind : tuple of float, optional
+        Winds (lo, hi) [m/s] in which the worst is looked for, lift and frequency of each; by default the window of
+        detuning of the case, with the lift at its wind.
+    scatter : Scatter or dict or float
+        How far pipe, absorber and force may be off [-]; a number alone is that of the pipe's frequency.
+    quantile : float, optional
+        Of the objective over the scatter; by default the worst.
+    scatter_samples : int
+        Pipes drawn where more than the pipe's frequency scatters or a quantile is asked.
     force_margin : float
-        Factor on the force up to which no detached response curve may exist [-].
-    stroke : float, optional
-        Largest displacement allowed between absorber and pipe [m].
-    linear, kappa, xi2 : tuple of float, optional
-        Ranges (lo, hi) of the parameters, per mass of the pipe; by default wide ones that scale with the pipe.
-    samples : int
-        Initial states per frequency in the verification.
-    seed : int
-        Of the samples.
-    errors : tuple of float
-        Frequencies of the pipe over the nominal one [-] at which all devices are compared, not retuned.
-    margins : tuple of float
-        Force margins [-] of the trade-off between margin and worst peak.
+        Factor on the force up to which no detached response curve may exist.
+    stroke, spring_length : float, optional
+        Largest displacement between absorber and pipe, and room for a transverse spring [m].
+    spring_stress : float, optional
+        Shear stress allowed in coil springs that must fit into their length [Pa].
+    samples, seed : int
+        Of the initial states per frequency in the verification.
+    errors, margins : tuple of float
+        Frequencies of the pipe over the nominal one of the comparison, and force margins of the trade-off [-].
 
     Raises
     ------
@@ -45,48 +57,40 @@ class DesignSettings:
         For bad input.
     """
 
-    mass_ratio: float = 0.02
-    family: str = "sink"
-    scatter: float = 0.0
-    force_margin: float = 1.05
-    stroke: float | None = None
-    linear: Range | None = None
-    kappa: Range | None = None
-    xi2: Range | None = None
-    samples: int = 200
-    seed: int = 1
-    errors: tuple[float, ...] = (0.85, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15)
-    margins: tuple[float, ...] = (1.0, 1.05, 1.1, 1.15, 1.2)
+    def __init__(self, /, **data: Any) -> None:
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise parameter_error(error, Design) from error
 
-    def __post_init__(self) -> None:
-        check_number("mass_ratio", self.mass_ratio, above=0, at_most=1)
-        check_choice("family", self.family, FAMILIES)
-        check_number("scatter", self.scatter, at_least=0, at_most=0.5)
-        check_number("force_margin", self.force_margin, at_least=1, at_most=3)
-        if self.stroke is not None:
-            check_number("stroke", self.stroke, above=0, unit="m")
-        for name, unit in _RANGE_UNITS.items():
-            given = getattr(self, name)
-            if given is not None:
-                object.__setattr__(self, name, _checked_range(name, given, unit))
-        check_count("samples", self.samples, at_most=1_000_000)
-        check_count("seed", self.seed, at_least=0)
-        for index, error in enumerate(self.errors):
-            check_number(f"errors[{index}]", error, at_least=0.5, at_most=1.5)
-        for index, margin in enumerate(self.margins):
-            check_number(f"margins[{index}]", margin, at_least=1, at_most=3)
+    def changed(self, **changes: Any) -> DesignSettings:
+        """The same with some of them changed."""
+        return DesignSettings(**(self.given() | changes))
+
+    def given(self) -> dict[str, Any]:
+        """Those that were given, by name."""
+        return {name: getattr(self, name) for name in self.model_fields_set}
 
 
-def _checked_range(name: str, given: Range, unit: str) -> Range:
-    allowed = f"two numbers (lo, hi) with 0 <= lo < hi [{unit}]"
-    try:
-        lo, hi = given
-    except (TypeError, ValueError):
-        raise ParameterError(name, given, allowed) from None
-    lo, hi = (
-        check_number(f"{name}[0]", lo, at_least=0, unit=unit),
-        check_number(f"{name}[1]", hi, at_least=0, unit=unit),
-    )
-    if not lo < hi or not math.isfinite(hi):
-        raise ParameterError(name, (lo, hi), allowed)
-    return lo, hi
+def settings_for(
+    case: Case, mass_ratio: Any = None, settings: Design | None = None, changes: dict[str, Any] | None = None
+) -> DesignSettings:
+    """Settings of a design: those of the case, those of `settings` in their place, and single changes.
+
+    Raises
+    ------
+    ParameterError
+        For bad input; an unknown name is refused with the nearest.
+    """
+    changes = dict(changes or {})
+    for name in changes:
+        if name not in Design.model_fields:
+            near = nearest(name, Design.model_fields)
+            hint = f"Did you mean {near!r}?" if near else None
+            raise ParameterError(name, changes[name], "one of " + ", ".join(Design.model_fields), hint=hint)
+    base = settings if settings is not None else case.design
+    values = {} if base is None else {name: getattr(base, name) for name in base.model_fields_set}
+    values |= changes | ({} if mass_ratio is None else {"mass_ratio": mass_ratio})
+    if values.get("mass_ratio") is None:
+        values["mass_ratio"] = case.absorbers[0].mass / case.pipe.mass if case.absorbers else _MASS_RATIO
+    return DesignSettings(**values)

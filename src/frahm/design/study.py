@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm.arrays import labelled
-from frahm.design.absorber import DesignedAbsorber
+from frahm.design.absorber import UNITS, DesignedAbsorber
 from frahm.design.hardware import Hardware
+from frahm.design.objective import Objective
 from frahm.design.robustness import Sensitivity, ToleranceBand
 from frahm.design.settings import DesignSettings
 
@@ -32,8 +33,10 @@ class Rival:
         One of `NAMES`.
     design : DesignedAbsorber or None
         Its parameters; None for no absorber, or for one of the case that is not of the family.
-    worst_pipe_peak, relative_peak : float
-        Largest over all attractors, frequencies and frequency errors [m].
+    value : float
+        Of the objective: the worst pipe peak, or whatever was asked for.
+    worst_pipe_peak, relative_peak, pipe_rms : float
+        Largest over all attractors, frequencies and disturbances [m].
     error, frequency : float
         Frequency of the pipe over its nominal one [-], and Omega [rad/s], where the pipe peak occurs.
     kind : str
@@ -52,8 +55,10 @@ class Rival:
 
     name: str
     design: DesignedAbsorber | None
+    value: float
     worst_pipe_peak: float
     relative_peak: float
+    pipe_rms: float
     error: float
     frequency: float
     kind: str
@@ -66,10 +71,11 @@ class Rival:
 
 @dataclass(frozen=True)
 class MarginPoint:
-    """The best design under one force margin: `worst_pipe_peak` [m] by the tier named."""
+    """The best design under one force margin: value of the objective and `worst_pipe_peak` [m] by the tier named."""
 
     force_margin: float
     design: DesignedAbsorber
+    value: float
     worst_pipe_peak: float
     verified: bool
     tier: str
@@ -137,6 +143,11 @@ class DesignStudy:
     version: str
 
     @property
+    def objective(self) -> Objective:
+        """What was made small."""
+        return Objective(self.settings.objective, self.settings.quantile)
+
+    @property
     def verified(self) -> bool:
         """Whether nothing in the study is in doubt."""
         return not self.unverified and not self.interrupted
@@ -145,7 +156,8 @@ class DesignStudy:
         """Plain data for the summary, in SI units."""
         return {
             "family": self.settings.family,
-            "settings": {name: getattr(self.settings, name) for name in self.settings.__dataclass_fields__},
+            "objective": {"name": self.settings.objective, "title": self.objective.title, "unit": self.objective.unit},
+            "settings": self.settings.model_dump(mode="json"),
             "best": rival_row(self.best),
             "with_margin": {"force": self.settings.force_margin, "pipe_peak": self.with_margin},
             "comparison": [rival_row(rival) for rival in self.comparison],
@@ -155,8 +167,8 @@ class DesignStudy:
                 "verified": {name: list(values) for name, values in self.error_verified.items()},
             },
             "trade_off": [
-                {"force_margin": p.force_margin, **_parameters(p.design), "worst_pipe_peak": p.worst_pipe_peak,
-                 "verified": p.verified, "tier": p.tier}
+                {"force_margin": p.force_margin, **p.design.parameters, "value": p.value,
+                 "worst_pipe_peak": p.worst_pipe_peak, "verified": p.verified, "tier": p.tier}
                 for p in self.trade_off
             ],
             "hardware": hardware_rows(self.hardware),
@@ -186,12 +198,16 @@ class DesignStudy:
             "comparison_pipe_peak": labelled(
                 "rival", [r.worst_pipe_peak for r in rivals], peak, "m", names=", ".join(r.name for r in rivals)
             ),
+            "comparison_value": labelled("rival", [r.value for r in rivals], self.objective.title, self.objective.unit),
             "comparison_relative_peak": labelled("rival", [r.relative_peak for r in rivals], "largest stroke", "m"),
             "comparison_verified": labelled("rival", [r.verified for r in rivals], "verified", "1"),
             "force_margin": labelled("margin_index", [p.force_margin for p in curve], margin, "1"),
+            "margin_value": labelled(
+                "margin_index", [p.value for p in curve], self.objective.title, self.objective.unit
+            ),
             "margin_pipe_peak": labelled("margin_index", [p.worst_pipe_peak for p in curve], peak, "m"),
         }
-        for name, unit in (("rho2", "1"), ("linear", "1/s^2"), ("kappa", "1/(m^2 s^2)"), ("xi2", "1/s")):
+        for name, unit in UNITS.items():
             values = [math.nan if r.design is None else getattr(r.design, name) for r in rivals]
             variables[f"comparison_{name}"] = labelled("rival", values, f"{name} over mass of the pipe", unit)
             values = [getattr(p.design, name) for p in curve]
@@ -208,7 +224,7 @@ def tolerance_row(band: ToleranceBand | None) -> dict[str, Any] | None:
     """The tolerance band as plain data."""
     if band is None:
         return None
-    return {"tolerance": band.tolerance, "pipe_peak": band.pipe_peak, "corner": _parameters(band.corner),
+    return {"tolerance": band.tolerance, "pipe_peak": band.pipe_peak, "corner": band.corner.parameters,
             "verified": band.verified, "breaks": band.breaks}  # fmt: skip
 
 
@@ -216,9 +232,11 @@ def rival_row(rival: Rival) -> dict[str, Any]:
     """One device as plain data."""
     return {
         "name": rival.name,
-        **(_parameters(rival.design) if rival.design else {}),
+        **(rival.design.parameters if rival.design else {}),
+        "value": rival.value,
         "worst_pipe_peak": rival.worst_pipe_peak,
         "relative_peak": rival.relative_peak,
+        "pipe_rms": rival.pipe_rms,
         "frequency_error": rival.error - 1.0,
         "frequency": rival.frequency,
         "kind": rival.kind,
@@ -228,7 +246,3 @@ def rival_row(rival: Rival) -> dict[str, Any]:
         "samples": rival.samples,
         "unverified": list(rival.unverified),
     }
-
-
-def _parameters(design: DesignedAbsorber) -> dict[str, float]:
-    return {"rho2": design.rho2, "linear": design.linear, "kappa": design.kappa, "xi2": design.xi2}

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from frahm.case import Scatter
+from frahm.design.objective import Objective
 from frahm.design.study import Rival
 
 _ALIKE = 0.005  # values that differ less are equal
@@ -11,11 +13,12 @@ WORDS = {"case": "the case's own absorber", "sink": "the optimum sink", "none": 
 
 
 def verdict(
-    rivals: Sequence[Rival], errors: Sequence[float], table: dict[str, tuple[float, ...]], scatter: float
-) -> str:
+    rivals: Sequence[Rival], errors: Sequence[float], table: dict[str, tuple[float, ...]], scatter: Scatter,
+    objective: Objective,
+) -> str:  # fmt: skip
     """What the comparison says, and from which frequency error on a sink beats the tuned mass damper."""
     by_name = {rival.name: rival for rival in rivals}
-    sentences = [_best(by_name, scatter)]
+    sentences = [_best(by_name, scatter, objective)]
     if "tuned mass damper" in table:
         for name in ("case", "sink"):
             if name in table:
@@ -31,23 +34,32 @@ def word(name: str) -> str:
     return WORDS.get(name, f"the {name}")
 
 
-def _best(by_name: dict[str, Rival], scatter: float) -> str:
-    given = f"With the pipe's frequency anywhere within {100 * scatter:.3g} %" if scatter else "With the pipe as given"
-    order = sorted(by_name.values(), key=lambda rival: rival.worst_pipe_peak)
+def _given(scatter: Scatter) -> str:
+    words = {"pipe_frequency": "the pipe's frequency", "pipe_damping": "its damping", "kappa": "the absorber's spring",
+             "xi2": "its damper", "force": "the force"}  # fmt: skip
+    parts = [f"{words[name]} anywhere within {100 * getattr(scatter, name):.3g} %" for name in scatter.names]
+    return "With " + " and ".join(parts) if parts else "With the pipe as given"
+
+
+def _best(by_name: dict[str, Rival], scatter: Scatter, objective: Objective) -> str:
+    order = sorted(by_name.values(), key=lambda rival: rival.value)
     first, none = order[0], by_name.get("none")
     tuned, mixed = by_name.get("tuned mass damper"), by_name.get("mixed")
-    if tuned and mixed and tuned.worst_pipe_peak <= (1 + _ALIKE) * mixed.worst_pipe_peak:
+    if tuned and mixed and tuned.value <= (1 + _ALIKE) * mixed.value:
         first = tuned
-    text = f"{given}, {word(first.name)} has the smallest worst pipe peak, {first.worst_pipe_peak:#.3g} m"
-    if none and none is not first:
-        text += f", {100 * first.worst_pipe_peak / none.worst_pipe_peak:.2g} % of that without absorber"
+    unit = objective.unit_text.rstrip()
+    text = (
+        f"{_given(scatter)}, {word(first.name)} has the smallest {objective.title}, {first.value:#.3g} {unit}".rstrip()
+    )
+    if none and none is not first and none.value > 0:
+        text += f", {100 * first.value / none.value:.2g} % of that without absorber"
     sink = by_name.get("sink")
     if sink and first is not sink:
-        text += f"; the optimum sink reaches {sink.worst_pipe_peak:#.3g} m"
-        text += f", {sink.worst_pipe_peak / first.worst_pipe_peak:.3g} times as much"
-    if tuned and mixed and mixed is first:
-        gain = 1 - mixed.worst_pipe_peak / tuned.worst_pipe_peak
-        text += f"; it gains {100 * gain:.2g} % over the best tuned mass damper"
+        text += f"; the optimum sink reaches {sink.value:#.3g} {unit}".rstrip()
+        if first.value > 0:
+            text += f", {sink.value / first.value:.3g} times as much"
+    if tuned and mixed and mixed is first and tuned.value > 0:
+        text += f"; it gains {100 * (1 - mixed.value / tuned.value):.2g} % over the best tuned mass damper"
     return text + "."
 
 

@@ -1,19 +1,24 @@
-"""Tier 3: a finalist against all attractors, at every frequency error, with the force given and with its margin."""
+"""Tier 3: a finalist against all attractors, under every disturbance, with the force given and with its margin."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frahm.attractors import WorstCase, find_attractors, worst_case
-from frahm.design.exact import Windows, disturbed, exact_judgement
+from frahm.assessment.climate_mean import climate_mean
+from frahm.attractors import WorstCase, find_attractors
+from frahm.attractors.worst import worst_over
+from frahm.case import Case
+from frahm.design.disturbance import Disturbance
+from frahm.design.exact import Windows, exact_judgement
+from frahm.design.objective import Objective
 from frahm.errors import Outcome
 from frahm.harmonic_balance import is_linear
-from frahm.response import ResponseCurve, frequency_response
-from frahm.systems import System
+from frahm.response import ResponseCurve
+from frahm.systems import System, build_system, with_parameters
 
 _REFINEMENTS = 4
 _MOST_POINTS = 6  # special points looked at on both sides in a glimpse, the largest first
@@ -27,9 +32,12 @@ class Verification:
 
     Attributes
     ----------
+    value : float
+        Of the objective, see `Objective`.
     pipe_peak, relative_peak, pipe_rms : float
-        Largest over all attractors, frequencies and frequency errors [m].
-    error, frequency : float
+        Largest over all attractors, frequencies and disturbances [m].
+    disturbance : Disturbance
+    frequency : float
         Where the pipe peak occurs.
     kind : str
         Of the attractor that causes it.
@@ -39,14 +47,16 @@ class Verification:
     samples : int
         Initial states per frequency; 0 where the equations are linear and the response is unique.
     searched : int
-        Frequencies searched, all errors together.
+        Frequencies searched, all disturbances together.
     tier : str
         What the numbers rest on.
     """
 
+    value: float
     pipe_peak: float
     relative_peak: float
-    error: float
+    pipe_rms: float
+    disturbance: Disturbance
     frequency: float
     kind: str
     verified: bool
@@ -59,7 +69,8 @@ class Verification:
 def verification(
     system: System,
     windows: Windows,
-    errors: Sequence[float],
+    disturbances: Sequence[Disturbance],
+    objective: Objective,
     *,
     samples: int,
     seed: int,
@@ -68,7 +79,7 @@ def verification(
     periods: int = 3000,
     refine: bool = True,
 ) -> Verification:
-    """Worst case over all attractors at every frequency error, with more errors beside the worst one.
+    """Worst case over all attractors under every disturbance; where these are a grid, with more beside the worst one.
 
     Raises
     ------
@@ -76,32 +87,43 @@ def verification(
         If the search was interrupted.
     """
     if is_linear(system):
-        return _linear(system, windows, errors, force)
-    found: dict[float, WorstCase] = {}
+        return _linear(system, windows, disturbances, objective, force)
+    found: dict[Disturbance, WorstCase] = {}
 
-    def look(error: float) -> None:
-        window, _ = windows.at(error)
-        worst = worst_case(
-            disturbed(system, error, force), frequency=window, samples=samples, seed=seed, min_basin=min_basin,
-            periods=periods,
+    def look(one: Disturbance) -> None:
+        window, _ = windows.at(one)
+        worst = worst_over(
+            one.at_force(force).of(system), *window, windows.axis, samples=samples, seed=seed, min_basin=min_basin,
+            periods=periods, rms=objective.name == "rms",
         )  # fmt: skip
         if Outcome.INTERRUPTED.value in worst.unverified:
             raise KeyboardInterrupt
-        found[error] = worst
+        found[one] = worst
 
-    for error in errors:
-        look(float(error))
-    for _ in range(_REFINEMENTS if refine and len(errors) > 1 else 0):
-        middles = _beside_worst(found)
+    for one in disturbances:
+        look(one)
+    for _ in range(_REFINEMENTS if refine and is_grid(disturbances) else 0):
+        middles = _beside_worst(found, objective)
         if not middles:
             break
-        for error in middles:
-            look(error)
-    return _joined(found, samples)
+        for one in middles:
+            look(one)
+    return _joined(found, objective, samples)
 
 
-def glimpse(system: System, windows: Windows, error: float, *, samples: int, seed: int, periods: int) -> Verification:
-    """Worst of few frequencies at one frequency error: all periodic responses, and attractors where the worst may be.
+def is_grid(disturbances: Sequence[Disturbance]) -> bool:
+    """Whether they differ in the frequency of the pipe alone, on both sides of the nominal one, and ascend."""
+    if len(disturbances) < 2:
+        return False
+    plain = all(replace(one, pipe_frequency=1.0) == Disturbance(lock_in=one.lock_in) for one in disturbances)
+    return plain and list(disturbances) == sorted(disturbances)
+
+
+def glimpse(
+    system: System, windows: Windows, disturbance: Disturbance, objective: Objective, *, samples: int, seed: int,
+    periods: int,
+) -> Verification:  # fmt: skip
+    """Worst of few frequencies under one disturbance: all periodic responses, and attractors where the worst may be.
 
     Attractors are looked for at the largest stable responses, beside the special points and in the middle of unstable
     ranges. Cheaper than `verification` and less sure: for tables.
@@ -112,20 +134,25 @@ def glimpse(system: System, windows: Windows, error: float, *, samples: int, see
         If the search was interrupted.
     """
     if is_linear(system):
-        return _linear(system, windows, [error], 1.0)
-    window, wide = windows.at(error)
-    changed = disturbed(system, error)
-    curve = frequency_response(changed, frequency=wide)
+        return _linear(system, windows, [disturbance], objective, 1.0)
+    window, _ = windows.at(disturbance)
+    changed = disturbance.of(system)
+    curve = windows.curve(system, disturbance)
     inside = (curve.frequency >= window[0]) & (curve.frequency <= window[1])
     best, doubts = None, list(curve.unverified)
     places = _telling_frequencies(curve, inside)
+    rms = 0.0
     for frequency in places:
-        found = find_attractors(changed, frequency=frequency, samples=samples, seed=seed, periods=periods)
+        driven = (
+            changed if windows.axis is None else with_parameters(changed, force=windows.axis.lift_factor(frequency))
+        )
+        found = find_attractors(driven, frequency=frequency, samples=samples, seed=seed, periods=periods)
         if found.outcome is Outcome.INTERRUPTED:
             raise KeyboardInterrupt
         for attractor in found:
             if attractor.kind == "unsettled":
                 doubts.append(f"Some motions did not settle at Omega = {frequency:.6g} rad/s.")
+            rms = max(rms, attractor.pipe_rms)
             if best is None or attractor.pipe_peak > best.pipe_peak:
                 best = attractor
     stable = inside & curve.stable
@@ -137,9 +164,10 @@ def glimpse(system: System, windows: Windows, error: float, *, samples: int, see
     else:
         peak, kind, frequency = best.pipe_peak, best.kind, best.frequency
         stroke = max(stroke, best.relative_peak)
+    rms = max(rms, periodic / math.sqrt(2))
     return Verification(
-        peak, stroke, error, frequency, kind, not doubts, tuple(dict.fromkeys(doubts)), samples, len(places),
-        "attractors at few frequencies",
+        rms if objective.name == "rms" else peak, peak, stroke, rms, disturbance, frequency, kind, not doubts,
+        tuple(dict.fromkeys(doubts)), samples, len(places), "attractors at few frequencies",
     )  # fmt: skip
 
 
@@ -165,28 +193,40 @@ def _telling_frequencies(curve: ResponseCurve, inside: np.ndarray) -> list[float
     return sorted(chosen)
 
 
-def _beside_worst(found: dict[float, WorstCase]) -> list[float]:
-    """Middles of the gaps beside the worst frequency error."""
+def _beside_worst(found: dict[Disturbance, WorstCase], objective: Objective) -> list[Disturbance]:
+    """Middles of the gaps beside the worst frequency of the pipe."""
     grid = sorted(found)
-    at = max(range(len(grid)), key=lambda i: found[grid[i]].pipe_peak)
+    at = max(range(len(grid)), key=lambda i: _value(found[grid[i]], objective))
     neighbours = [grid[i] for i in (at - 1, at + 1) if 0 <= i < len(grid)]
-    return [0.5 * (grid[at] + other) for other in neighbours if abs(grid[at] - other) > _CLOSE]
+    here = grid[at].pipe_frequency
+    return [
+        replace(grid[at], pipe_frequency=0.5 * (here + other.pipe_frequency))
+        for other in neighbours
+        if abs(here - other.pipe_frequency) > _CLOSE
+    ]
 
 
-def _joined(found: dict[float, WorstCase], samples: int) -> Verification:
-    error = max(sorted(found), key=lambda r: found[r].pipe_peak)
-    worst = found[error]
+def _value(worst: WorstCase, objective: Objective) -> float:
+    return worst.pipe_rms if objective.name == "rms" else worst.pipe_peak
+
+
+def _joined(found: dict[Disturbance, WorstCase], objective: Objective, samples: int) -> Verification:
+    grid = sorted(found)
+    at = max(grid, key=lambda one: found[one].pipe_peak)
+    worst = found[at]
     doubts = tuple(
         dict.fromkeys(
-            (f"With the pipe's frequency {100 * (r - 1):+.3g} %: " if len(found) > 1 else "") + sentence
-            for r in sorted(found)
-            for sentence in found[r].unverified
+            (f"With {one.text} off: " if one.text else "") + sentence
+            for one in grid
+            for sentence in found[one].unverified
         )
     )
     return Verification(
+        value=float(objective.over_scatter(np.array([_value(found[one], objective) for one in grid]))),
         pipe_peak=worst.pipe_peak,
         relative_peak=max(item.relative_peak for item in found.values()),
-        error=error,
+        pipe_rms=max(item.pipe_rms for item in found.values()),
+        disturbance=at,
         frequency=worst.frequency,
         kind=worst.attractor.kind,
         verified=not doubts and math.isfinite(worst.pipe_peak),
@@ -197,13 +237,53 @@ def _joined(found: dict[float, WorstCase], samples: int) -> Verification:
     )
 
 
-def _linear(system: System, windows: Windows, errors: Sequence[float], force: float) -> Verification:
+def _linear(
+    system: System, windows: Windows, disturbances: Sequence[Disturbance], objective: Objective, force: float
+) -> Verification:
     """A damped linear system has one response, which attracts every motion: the exact curve is the proof."""
-    fine = np.linspace(min(errors), max(errors), 4 * len(errors) - 3) if len(errors) > 1 else np.array(errors)
-    exact = exact_judgement(system, windows, [float(r) for r in fine], (force,))
-    stable = exact.growth_rate < 0
-    doubts = exact.unverified + (() if stable else ("The linear response is not stable.",))
+    conditions = list(disturbances)
+    if is_grid(conditions):
+        ends = conditions[0].pipe_frequency, conditions[-1].pipe_frequency
+        fine = np.linspace(*ends, 4 * len(conditions) - 3)
+        conditions = [replace(conditions[0], pipe_frequency=float(r)) for r in fine]
+    looks = [exact_judgement(system, windows, [one], (force,)) for one in conditions]
+    worst = max(looks, key=lambda look: look.pipe_peak)
+    doubts = tuple(dict.fromkeys(doubt for look in looks for doubt in look.unverified))
+    doubts += () if all(look.growth_rate < 0 for look in looks) else ("The linear response is not stable.",)
+    rms = worst.pipe_peak / math.sqrt(2)
+    scale = 1 / math.sqrt(2) if objective.name == "rms" else 1.0
+    value = scale * float(objective.over_scatter(np.array([look.pipe_peak for look in looks])))
     return Verification(
-        exact.pipe_peak, exact.relative_peak, exact.error, exact.frequency, "periodic", not doubts, doubts, 0,
-        len(fine), "exact linear response",
+        value, worst.pipe_peak, max(look.relative_peak for look in looks), rms, worst.disturbance, worst.frequency,
+        "periodic", not doubts, doubts, 0, len(conditions), "exact linear response",
     )  # fmt: skip
+
+
+def climate_verification(
+    case: Case, disturbances: Sequence[Disturbance], objective: Objective, *, samples: int, seed: int
+) -> Verification:
+    """Mean over the wind climate of a case under every disturbance, over all attractors at every wind."""
+    found = [climate_mean(case, objective.name, samples=samples, seed=seed, changed=one.of) for one in disturbances]
+    at = max(range(len(found)), key=lambda i: found[i].pipe_peak)
+    doubts = tuple(
+        dict.fromkeys(
+            (f"With {one.text} off: " if one.text else "") + sentence
+            for one, mean in zip(disturbances, found, strict=True)
+            for sentence in mean.unverified
+        )
+    )
+    linear = is_linear(build_system(case))
+    return Verification(
+        value=float(objective.over_scatter(np.array([mean.value for mean in found]))),
+        pipe_peak=found[at].pipe_peak,
+        relative_peak=max(mean.relative_peak for mean in found),
+        pipe_rms=max(mean.pipe_rms for mean in found),
+        disturbance=disturbances[at],
+        frequency=found[at].frequency,
+        kind=found[at].kind,
+        verified=not doubts,
+        unverified=doubts,
+        samples=0 if linear else samples,
+        searched=len(found),
+        tier="exact linear response" if linear else "attractor search over the wind climate",
+    )

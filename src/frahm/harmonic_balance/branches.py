@@ -17,12 +17,14 @@ from frahm.harmonic_balance.follow import CLOSED, follow
 from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count
 from frahm.harmonic_balance.newton import correct, solve_at
 from frahm.harmonic_balance.orbits import between, describe, same_harmonics
+from frahm.harmonic_balance.root_counts import polynomial_counts, table_counts
 from frahm.harmonic_balance.seeds import (
     Seed,
     Seeder,
     almost_seeds,
     count_cubic,
     seeder_for,
+    stiffness_at,
     two_harmonic_seeds,
 )
 from frahm.systems import System
@@ -144,23 +146,37 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
     such range, and both edges, stand for all.
     """
     spread = np.linspace(search.lo, search.hi, _SEED_FREQUENCIES)
-    e = search.seeder.spring
-    if e is None or e.size != 2 or e[0] != 0 or search.seeder.buckled:
-        return np.linspace(search.lo, search.hi, 3 * _SEED_FREQUENCIES), np.empty(0), np.empty(0)
+    pb, seeder = search.problem, search.seeder
+    e, table = seeder.spring, seeder.table
+    cubic = e is not None and e.size == 2 and e[0] == 0 and not seeder.buckled
+    dense = np.linspace(search.lo, search.hi, 3 * _SEED_FREQUENCIES)
+    if pb.directions.shape != (1, 1) or (e is None and table is None):
+        return dense, np.empty(0), np.empty(0)
     grid = np.linspace(search.lo, search.hi, _GRID)
     counts, excess = np.empty(_GRID, np.int64), np.empty(_GRID)
-    count_cubic(search.problem, grid, e[1], counts, excess)
+    if cubic and e is not None:
+        count_cubic(pb, grid, e[1], counts, excess)
+    else:
+        parts = [stiffness_at(pb, 1, float(W)) for W in grid]
+        S, F = (np.array([part[which].flat[0] for part in parts]) for which in (0, 1))
+        if table is not None:
+            counts, excess = table_counts(pb, table, grid, S, F)
+        elif e is not None:
+            counts, excess = polynomial_counts(e, S, F)
     edges = np.flatnonzero(np.diff(counts)) + 1
     runs = np.split(np.arange(_GRID), edges)
     middles = [grid[run[len(run) // 2]] for run in runs]
     inner = excess[1:-1]
     almost = np.flatnonzero((inner > excess[:-2]) & (inner > excess[2:]) & (inner < 0)) + 1
     # a short range of three roots may lie beside that of the exact equations: both are looked at around it, too
-    short = [run for run in runs if counts[run[0]] == 3 and len(run) <= _SHORT_RANGE]
+    short = [run for run in runs if counts[run[0]] >= 3 and len(run) <= _SHORT_RANGE]
     step = grid[1] - grid[0]
     around = [np.linspace(grid[run[0]] - 2 * step, grid[run[-1]] + 2 * step, _AROUND) for run in short]
     near = np.concatenate([grid[almost], *around])
-    return np.unique(np.concatenate([spread[[0, -1]], middles])), spread, near[(near > search.lo) & (near < search.hi)]
+    near = near[(near > search.lo) & (near < search.hi)]
+    if cubic:
+        return np.unique(np.concatenate([spread[[0, -1]], middles])), spread, near
+    return np.unique(np.concatenate([dense, middles])), np.empty(0), near
 
 
 def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
@@ -173,8 +189,10 @@ def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
     complete_at, beside, almost = seed_frequencies(search)
     seeds = [seed for W in complete_at for seed in seeder.at(float(W), search.x_scale)]
     seeds += [seed for W in beside for seed in seeder.at(float(W), search.x_scale) if 3 in seed.harmonics]
-    if seeder.spring is not None:
-        seeds += [seed for W in almost for seed in almost_seeds(search.problem, float(W), seeder.spring[1])]
+    if seeder.table is None and seeder.spring is not None:
+        seeds += [seed for W in almost for seed in almost_seeds(search.problem, float(W), seeder.spring)]
+    else:
+        seeds += [seed for W in almost for seed in seeder.at(float(W), search.x_scale)]
     about_others = [seed for seed in seeds if odd and 0 in seed.harmonics]
     _follow_new(search, [seed for seed in seeds if not odd or 0 not in seed.harmonics], tracks)
     if seeder.spring is not None and _third_harmonic(search, tracks) > _STRONG_THIRD:

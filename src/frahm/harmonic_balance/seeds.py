@@ -112,22 +112,32 @@ def single_element_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
     return seeds
 
 
-def almost_seeds(pb: Problem, W: float, k: float) -> list[Seed]:
+def almost_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
     """Starts where the first harmonic nearly has a pair of further roots: the exact equations may have them.
 
-    They lie around the turning points of m^3 + 2 c m^2 + m, or its point of inflection.
+    They lie around the turning points of |S + k(N)|^2 N, or its point of inflection.
     """
     S, F = stiffness_at(pb, 1, W)
-    size = abs(S[0, 0])
-    c = math.copysign(1.0, k) * S[0, 0].real / size
-    spread = math.sqrt(max(4 * c * c - 3, 0.0))
     seeds = []
-    for m in {(-2 * c + part * spread) / 3 for part in (-1.2, -0.8, 0.0, 0.8, 1.2)}:
-        if m > 0:
-            N = m * size / abs(k)
-            Z = F[0] / (S[0, 0] + k * N)
-            seeds.append(Seed(W, {1: np.array([Z * math.sqrt(N) / abs(Z)])}))
+    for N in _turning_amplitudes(complex(S[0, 0]), e):
+        Z = F[0] / (S[0, 0] + np.polynomial.polynomial.polyval(N, e))
+        seeds.append(Seed(W, {1: np.array([Z * math.sqrt(N) / abs(Z)])}))
     return seeds
+
+
+def _turning_amplitudes(S: complex, e: Floats) -> set[float]:
+    """|Z|^2 at and beside the turning points of the load, or where they are about to appear."""
+    if e.size == 2 and e[0] == 0:
+        size, k = abs(S), e[1]
+        c = math.copysign(1.0, k) * S.real / size
+        spread = math.sqrt(max(4 * c * c - 3, 0.0))
+        found = {(-2 * c + part * spread) / 3 * size / abs(k) for part in (-1.2, -0.8, 0.0, 0.8, 1.2)}
+        return {N for N in found if N > 0}
+    real = np.polynomial.Polynomial([S.real + e[0], *e[1:]])
+    load = np.polynomial.Polynomial([0, 1]) * (real * real + S.imag**2)
+    turns = load.deriv().trim().roots()
+    turns = turns[(turns.real > 0) & (np.abs(turns.imag) < 0.5 * np.abs(turns.real))]
+    return {float(share * N) for N in turns.real for share in (0.85, 1.0, 1.15)}
 
 
 def _third_harmonics(S3: complex, Z: complex, e: Floats) -> list[complex]:

@@ -40,6 +40,13 @@ class WindAxis:
         """Wind speed [m/s] that sheds at Omega [rad/s], inside the window."""
         return self.law.speed(np.clip(frequency, *self.frequency), *self.window)
 
+    def lift_factor(self, frequency: float) -> float:
+        """Lift over that at the wind of the case [-] at Omega [rad/s], by the cubics of `factor`."""
+        if not len(self.factor):
+            return 0.0
+        row = int(np.clip(np.searchsorted(self.factor[:, 0], frequency, side="right") - 1, 0, len(self.factor) - 2))
+        return float(np.polyval(self.factor[row, :0:-1], frequency - self.factor[row, 0]))
+
 
 def wind_axis(case: Case, window: Any) -> WindAxis:
     """The axis of a case over wind speeds (lo, hi) [m/s].

@@ -4,6 +4,7 @@ import pytest
 import frahm
 from frahm.attractors.settling import Settling, known_orbits
 from frahm.attractors.stroboscope import stroboscope
+from frahm.systems import with_parameters
 from frahm.time_integration import integrate_batch
 
 CASE = frahm.load_case("jacket-pipe").with_absorber(kappa=367.38, xi2=0.0085, rho2=0.02)
@@ -102,3 +103,19 @@ def test_the_worst_case_is_no_smaller_than_any_attractor_nearby():
     assert worst.attractor.pipe_peak == worst.pipe_peak
     assert worst.detuning == pytest.approx(worst.frequency - OMEGA)
     assert worst.relative_peak >= worst.attractor.relative_peak
+
+
+def test_a_beat_of_nearly_fifteen_periods_is_modulated_and_not_unsettled():
+    """Strobes that nearly repeat after 15 and 16 periods once looked like orbits that could not be found."""
+    sink = CASE.with_absorber(kappa=2938.763886908479, xi2=0.05740993019274083)
+    for error, W, repeats in ((1.05, 5.17606, 15), (1.1, 5.35969, 16)):
+        system = with_parameters(frahm.build_system(sink), pipe_frequency=error * OMEGA, force=error**2)
+        found = frahm.find_attractors(system, frequency=W, samples=24)
+        assert [a.kind for a in found] == ["quasi-periodic"]
+        late = frahm.integrate(system, frequency=W, periods=8000, samples_per_period=8)
+        strobes = late.x1[-400 * 8 :: 8]
+        moved = [np.max(np.abs(strobes[m:] - strobes[:-m])) for m in range(1, 20)]
+        assert 1 + np.argmin(moved) == repeats
+        last = late.x1[-3000 * 8 :]
+        assert found[0].pipe_peak == pytest.approx(np.max(np.abs(last)), rel=0.08)  # 8 samples a period cut the peak
+        assert found[0].pipe_rms == pytest.approx(np.sqrt(np.mean(last**2)), rel=2e-3)

@@ -1,0 +1,208 @@
+"""What a case and its settings come to: windows, disturbances, limits, and the closed form of every family."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from frahm.arrays import Floats
+from frahm.assessment.detail import detail_of, fatigue_section
+from frahm.assessment.fatigue import counted_band
+from frahm.case import Case
+from frahm.design.absorber import DesignedAbsorber, with_design
+from frahm.design.disturbance import Disturbance, disturbances
+from frahm.design.exact import Windows
+from frahm.design.host import Host, Lift, host_of
+from frahm.design.objective import ClimateMean, Objective
+from frahm.design.screening import Screening
+from frahm.design.search import Corrections, Limits, TierOne
+from frahm.design.settings import DesignSettings
+from frahm.design.space import design_space
+from frahm.errors import ParameterError
+from frahm.loads import wind_climate
+from frahm.response.wind import WindAxis, wind_axis
+from frahm.systems import build_system
+
+WIDE = (0.7, 1.3)  # of the pipe's frequency: where the lift may lock in
+_RESPONSE_POINTS, _BIRTH_POINTS, _WIND_POINTS = 121, 481, 161
+_PLACES, _ROUNDS = 7, 3  # positions looked at first, and how often the gaps beside the best are halved
+
+
+@dataclass(eq=False)
+class Problem:
+    """A case, what is asked for, and what was screened so far.
+
+    Attributes
+    ----------
+    case : Case
+    settings : DesignSettings
+    objective : Objective
+    windows : Windows
+    wide : tuple of float
+        Where the lift may lock in [rad/s].
+    disturbances : list of Disturbance
+    limits : Limits
+    tiers : dict
+        Closed forms by family and force margin.
+    """
+
+    case: Case
+    settings: DesignSettings
+    objective: Objective
+    windows: Windows
+    wide: tuple[float, float]
+    disturbances: list[Disturbance]
+    limits: Limits
+    tiers: dict[tuple[str, float], TierOne] = field(default_factory=dict)
+    _places: dict[str, float | None] = field(default_factory=dict)
+    _tried: int = 0
+
+    @classmethod
+    def of(cls, case: Case, settings: DesignSettings) -> Problem:
+        """The problem of a case.
+
+        Raises
+        ------
+        ParameterError
+            If the case lacks what the objective needs, or cannot have what is asked for.
+        """
+        objective = Objective(settings.objective, settings.quantile)
+        _check(case, settings, objective)
+        omega = case.pipe.frequency
+        wide = (WIDE[0] * omega, WIDE[1] * omega)
+        moving = settings.scatter.pipe_frequency > 0
+        axis = _axis(case, settings, objective)
+        if axis is not None:
+            windows = Windows(axis.frequency, axis.frequency, False, axis)
+        else:
+            lo, hi = case.analysis.detuning
+            windows = Windows(wide if moving else (omega + lo, omega + hi), wide, moving)
+        conditions = disturbances(
+            settings.scatter, settings.quantile, settings.scatter_samples, settings.seed, lock_in=axis is None
+        )
+        limits = Limits(
+            settings.force_margin, settings.most_stroke, False, settings.spring_length, settings.spring_stress
+        )
+        return cls(case, settings, objective, windows, wide, conditions, limits)
+
+    @property
+    def screened(self) -> int:
+        """Designs judged by the closed form so far."""
+        return self._tried + sum(tier.count for tier in self.tiers.values())
+
+    def tier(self, family: str, margin: float | None = None) -> TierOne:
+        """Closed form for a family, with the force given and with its margin, at its best place."""
+        most = self.settings.force_margin if margin is None else margin
+        if (family, most) not in self.tiers:
+            self.tiers[family, most] = self._tier(family, most, self.place(family))
+        return self.tiers[family, most]
+
+    def place(self, family: str) -> float | None:
+        """Position of the absorber that is best by the closed form [m]; None where none is asked for."""
+        if self.settings.position is None:
+            return None
+        if family not in self._places:
+            self._places[family] = self._best_place(family, *self.settings.position)
+        return self._places[family]
+
+    def _best_place(self, family: str, lo: float, hi: float) -> float:
+        known: dict[float, float] = {}
+
+        def look(place: float) -> None:
+            try:
+                tier = self._tier(family, self.settings.force_margin, place)
+            except ParameterError:  # the governing mode does not move there
+                known[place] = math.inf
+                return
+            known[place] = float(np.min(tier.predicted(tier.grid_judged, self.limits, Corrections())))
+            self._tried += tier.count
+
+        for place in np.linspace(lo, hi, _PLACES):
+            look(float(place))
+        for _ in range(_ROUNDS):
+            places = sorted(known)
+            at = places.index(min(places, key=lambda place: known[place]))
+            for other in (at - 1, at + 1):
+                if 0 <= other < len(places):
+                    look(0.5 * (places[at] + places[other]))
+        return min(sorted(known), key=lambda place: known[place])
+
+    def _host(self, place: float | None) -> Host:
+        ratio = self.settings.mass_ratio
+        mass = ratio[0] if isinstance(ratio, tuple) else ratio
+        some = DesignedAbsorber(mass or 1.0, 0.0, 1.0, 0.0, position=place)
+        return host_of(build_system(with_design(self.case, some)))
+
+    def _tier(self, family: str, margin: float, place: float | None) -> TierOne:
+        windows, host = self.windows, self._host(place)
+        forces = sorted({1.0, margin}) if family != "tuned" else [1.0]
+        lift: Lift | None = None if windows.axis is None else _lift(windows.axis)
+        wide = windows.wide if lift is None else windows.window
+        screening = Screening(
+            host,
+            host.conditions(
+                self.disturbances, windows.window, _RESPONSE_POINTS, moving=windows.moving, forces=forces, lift=lift
+            ),
+            host.conditions(self.disturbances, wide, _BIRTH_POINTS, moving=lift is None, lift=lift),
+            self._climate(host, place) if self.objective.over_climate else None,
+        )
+        space = design_space(host, self.case.pipe.mass, family, self.settings)
+        return TierOne(screening, dataclasses.replace(space, position=place), self.objective, self.limits)
+
+    def _climate(self, host: Host, place: float | None) -> ClimateMean:
+        """Mean over the winds of the band, equally spaced in frequency and closer around the resonance."""
+        axis, climate = self.windows.axis, wind_climate(self.case)
+        if axis is None:
+            raise RuntimeError("a mean over the climate needs the wind as its axis")
+        lift = _lift(axis)
+        grid = host.conditions([Disturbance(lock_in=False)], axis.frequency, _WIND_POINTS, moving=False).frequency
+        speeds = axis.speed(grid[0])
+        ends = np.concatenate([[speeds[0]], 0.5 * (speeds[1:] + speeds[:-1]), [speeds[-1]]])
+        chances = np.asarray(climate.probability(ends[:-1], ends[1:]))
+        rows = np.repeat(grid, len(self.disturbances), axis=0)
+        if self.objective.name == "expected":
+            conditions = host.conditions_at(self.disturbances, rows, lift=lift)
+            total = float(np.sum(chances))
+            return ClimateMean(conditions, chances / total if total > 0 else chances, lambda x, W: x)
+        detail = detail_of(self.case if self.case.absorbers else self.case.without_absorbers())
+        stressed = dataclasses.replace(host, output=np.asarray(detail.row[: host.output.size]))
+        conditions = stressed.conditions_at(self.disturbances, rows, lift=lift)
+
+        def rate(stress: Floats, W: Floats) -> Floats:
+            return np.asarray(W / (2 * np.pi) / detail.curve.cycles(2 * detail.factor * stress))
+
+        return ClimateMean(conditions, climate.duration * chances, rate)
+
+
+def _check(case: Case, settings: DesignSettings, objective: Objective) -> None:
+    if objective.over_climate:
+        wind_climate(case)
+    if objective.name == "damage":
+        fatigue_section(case)
+    if settings.wind is not None and objective.over_climate:
+        hint = "The band of the climate is fatigue.wind_speeds, or the winds that shed inside analysis.detuning."
+        raise ParameterError("design.wind", settings.wind, "nothing where the objective is a mean", hint=hint)
+    if settings.position is not None:
+        if case.pipe.kind == "mode":
+            allowed = "nothing, because a pipe given as one mode moves alike all along"
+            raise ParameterError("design.position", settings.position, allowed)
+        if settings.position[1] > case.pipe.length:
+            raise ParameterError(
+                "design.position", settings.position, f"sections of the pipe, 0 to {case.pipe.length:g} m"
+            )
+    if settings.quantile is not None and not settings.scatter.names:
+        hint = "Say what scatters: design: {scatter: {pipe_frequency: 0.1}}."
+        raise ParameterError("design.quantile", settings.quantile, "nothing where nothing scatters", hint=hint)
+
+
+def _axis(case: Case, settings: DesignSettings, objective: Objective) -> WindAxis | None:
+    if objective.over_climate:
+        return wind_axis(case, counted_band(case))
+    return None if settings.wind is None else wind_axis(case, settings.wind)
+
+
+def _lift(axis: WindAxis) -> Lift:
+    return np.vectorize(axis.lift_factor, otypes=[float])

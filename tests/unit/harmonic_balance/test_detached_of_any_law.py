@@ -1,0 +1,65 @@
+"""Detached curves of springs that are not purely cubic: the narrow range of their birth must not be stepped over."""
+
+import numpy as np
+import pytest
+
+import frahm
+from frahm.harmonic_balance.condensation import condense
+from frahm.harmonic_balance.root_counts import polynomial_counts
+from frahm.harmonic_balance.seeds import amplitude_roots, spring_polynomial, stiffness_at
+from frahm.systems import with_parameters
+
+CASE = frahm.load_case("jacket-pipe")
+OMEGA = CASE.pipe.frequency
+WIDE = (0.7 * OMEGA, 1.3 * OMEGA)
+MASS, KAPPA, XI2 = 247.0, 2871.84, 0.0572429  # a detached curve of the cubic spring is born at 1.062 times the force
+
+
+def sink(law):
+    absorber = {"name": "sink", "mass": 0.02 * MASS, "law": law | {"damping": MASS * XI2}}
+    return frahm.build_system(frahm.load_case(CASE.to_dict() | {"absorbers": [absorber]}))
+
+
+def quintic(q):
+    return sink({"kind": "polynomial", "coefficients": [0.0, 0.0, MASS * KAPPA, 0.0, MASS * q]})
+
+
+@pytest.mark.parametrize("force", [1.05, 1.08, 1.1, 1.15])
+def test_a_vanishing_fifth_power_changes_nothing(force):
+    cubic = with_parameters(sink({"kind": "cubic", "stiffness": MASS * KAPPA}), force=force)
+    other = with_parameters(quintic(1e-3), force=force)
+    one, two = (frahm.frequency_response(system, frequency=WIDE) for system in (cubic, other))
+    assert one.detached == two.detached == ((False,) if force < 1.06 else (False, True))
+    assert two.pipe_peak.max() == pytest.approx(one.pipe_peak.max(), rel=1e-6)
+
+
+@pytest.mark.parametrize("force", [1.15, 1.2])
+def test_the_detached_curve_of_transverse_springs_is_found_and_moves_as_it_says(force):
+    length = 4 * 0.0132
+    springs = sink({"kind": "transverse-springs", "stiffness": MASS * KAPPA * length**2, "length": length})
+    system = with_parameters(springs, force=force)
+    curve = frahm.frequency_response(system, frequency=WIDE)
+    assert curve.detached == (False, True)
+    on = (curve.branch == 1) & curve.stable
+    W = float(curve.frequency[on][np.argmax(curve.pipe_peak[on])])
+    upper = max(frahm.periodic_responses(system, frequency=W), key=lambda response: response.pipe_peak)
+    assert upper.stable
+    motion = frahm.integrate(system, frequency=W, periods=400, initial_state=upper.state, samples_per_period=64)
+    last = motion.x1[-64 * 20 :]
+    assert np.max(np.abs(last)) == pytest.approx(upper.pipe_peak, rel=2e-3)
+    assert upper.pipe_peak > 3 * curve.pipe_peak[curve.branch == 0].max()
+
+
+def test_roots_are_counted_as_the_polynomial_has_them():
+    system = with_parameters(quintic(3e6), force=1.2)
+    problem = condense(system)
+    e = spring_polynomial(problem)
+    grid = np.linspace(*WIDE, 301)
+    parts = [stiffness_at(problem, 1, float(W)) for W in grid]
+    S, F = (np.array([part[k].flat[0] for part in parts]) for k in (0, 1))
+    counts, excess = polynomial_counts(e, S, F)
+    exact = [len(amplitude_roots(s, f, e)) for s, f in zip(S, F, strict=True)]
+    assert set(exact) == {1, 3}
+    # two roots nearer than the grid of amplitudes are one near miss
+    assert np.mean(counts == exact) > 0.98
+    assert np.all(excess[counts != exact] > -0.05)
