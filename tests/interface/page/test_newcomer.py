@@ -72,7 +72,7 @@ class Newcomer:
 
 
 def opened_from_disk(browser, report):
-    """Text of the verdict and number of figures of a report, in a browser without a network; it must ask for nothing."""
+    """Text of the verdict and number of figures of a report, in a browser that has no network and asks for none."""
     context = browser.new_context(offline=True)
     page, asked, faults = context.new_page(), [], []
     page.on("request", lambda request: asked.append(request.url))
