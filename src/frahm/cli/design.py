@@ -14,35 +14,64 @@ if TYPE_CHECKING:
     from frahm.design import DesignStudy
 
 
+Range = tuple[float, float]
+
+
 def design(
     case: CaseArgument,
     out: Annotated[Path | None, typer.Option("--out", help="Folder to write to; by default out/<name>-design.")] = None,
-    family: Annotated[str, typer.Option(help="sink (cubic spring), tuned (linear) or mixed (both).")] = "sink",
+    objective: Annotated[
+        str | None, typer.Option(help="peak (default), rms, expected or damage: what is made small.")
+    ] = None,
+    family: Annotated[str | None, typer.Option(help="sink (cubic spring, default), tuned (linear) or mixed.")] = None,
     mass_ratio: Annotated[
         float | None, typer.Option(help="Mass over that of the pipe; by default the case's absorber, or 0.02.")
     ] = None,
-    scatter: Annotated[float, typer.Option(help="The pipe's frequency may be off by this fraction either way.")] = 0.0,
+    scatter: Annotated[
+        float | None, typer.Option(help="The pipe's frequency may be off by this fraction either way.")
+    ] = None,
+    quantile: Annotated[
+        float | None, typer.Option(help="Of the objective over the scatter; by default the worst.")
+    ] = None,
     force_margin: Annotated[
-        float, typer.Option(help="Factor on the force up to which no detached curve may exist.")
-    ] = 1.05,
+        float | None, typer.Option(help="Factor on the force up to which no detached curve may exist; 1.05.")
+    ] = None,
     stroke: Annotated[float | None, typer.Option(help="Largest stroke allowed, in m.")] = None,
-    samples: Annotated[int, typer.Option(help="Initial states per frequency in the verification.")] = 200,
-    seed: Annotated[int, typer.Option(help="The same seed gives the same result.")] = 1,
+    spring_length: Annotated[float | None, typer.Option(help="Room for a transverse spring, in m.")] = None,
+    spring_stress: Annotated[float | None, typer.Option(help="Shear stress allowed in coil springs, in Pa.")] = None,
+    kappa: Annotated[Range | None, typer.Option(help="Range of the cubic stiffness per mass, 1/(m2 s2).")] = None,
+    linear: Annotated[Range | None, typer.Option(help="Range of the linear stiffness per mass, 1/s2.")] = None,
+    quintic: Annotated[Range | None, typer.Option(help="Range of the stiffness of the fifth power, 1/(m4 s2).")] = None,
+    xi2: Annotated[Range | None, typer.Option(help="Range of the damping per mass, 1/s.")] = None,
+    masses: Annotated[Range | None, typer.Option(help="Range of the mass ratio, instead of one.")] = None,
+    position: Annotated[Range | None, typer.Option(help="Range of the place on an elastic pipe, in m.")] = None,
+    wind: Annotated[Range | None, typer.Option(help="Winds in which the worst is looked for, in m/s.")] = None,
+    samples: Annotated[int | None, typer.Option(help="Initial states per frequency in the verification; 200.")] = None,
+    seed: Annotated[int | None, typer.Option(help="The same seed gives the same result.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Write even if the folder holds another case.")] = False,
 ) -> None:
-    """Design the best absorber for a case, verify it and compare it with the tuned mass damper."""
+    """Design the best absorber for a case, verify it and compare it with the tuned mass damper.
+
+    What is asked for stands in the section design of the case; options take its place.
+    """
     from frahm.case import load_case
     from frahm.cli.folder import claim_folder, default_folder
     from frahm.cli.progress import shown_progress
+    from frahm.errors import ParameterError
 
     loaded = load_case(case)
     folder = default_folder(loaded) if out is None else out
     if out is None:
         folder = folder.with_name(f"{folder.name}-design")
-    asked: dict[str, Any] = {
-        "family": family, "scatter": scatter, "force_margin": force_margin, "stroke": stroke, "samples": samples,
-        "seed": seed,
+    if masses is not None and mass_ratio is not None:
+        raise ParameterError("--masses", masses, "left out where --mass-ratio is given")
+    given: dict[str, Any] = {
+        "objective": objective, "family": family, "scatter": scatter, "quantile": quantile,
+        "force_margin": force_margin, "stroke": stroke, "spring_length": spring_length,
+        "spring_stress": spring_stress, "kappa": kappa, "linear": linear, "quintic": quintic, "xi2": xi2,
+        "position": position, "wind": wind, "samples": samples, "seed": seed,
     }  # fmt: skip
+    asked = {name: value for name, value in given.items() if value is not None}
     with shown_progress() as progress:
         progress("loading", 0, 1)
         with held_interrupts():
@@ -52,26 +81,24 @@ def design(
             from frahm.report import write_design_report
 
         claim_folder(folder, loaded, force=force)
-        study = design_absorber(loaded, mass_ratio, progress=progress, **asked)
+        study = design_absorber(loaded, masses or mass_ratio, progress=progress, **asked)
         save_design(study, folder)
         write_design_report(study, folder)
     _conclude(study, folder)
 
 
 def _conclude(study: DesignStudy, folder: Path) -> None:
-    best = study.best
-    d = best.design
-    if d is not None:
-        spring = " and ".join(
-            text
-            for text, there in (
-                (f"linear {d.linear:.5g} 1/s^2", d.linear),
-                (f"kappa {d.kappa:.6g} 1/(m^2 s^2)", d.kappa),
-            )
-            if there
+    from frahm.design import parameters_text
+
+    best, objective = study.best, study.objective
+    if best.design is not None:
+        value = (
+            ""
+            if objective.name == "peak" and best.value == best.worst_pipe_peak
+            else (f" {objective.title} {best.value:#.4g} {objective.unit_text}".rstrip() + ",")
         )
         typer.echo(
-            f"Best {best.name}: {spring}, xi2 {d.xi2:.5g} 1/s, rho2 {d.rho2:.4g};"
+            f"Best {best.name}: {parameters_text(best.design)};{value}"
             f" worst pipe peak {best.worst_pipe_peak:#.4g} m, {'verified' if best.verified else 'UNVERIFIED'}."
         )
     typer.echo(study.verdict)

@@ -1,7 +1,8 @@
 """Room `design`: the best absorber, verified over all attractors and compared with its rivals."""
 
-from frahm.design.absorber import DesignedAbsorber, with_design
+from frahm.design.absorber import DesignedAbsorber, parameters_text, with_design
 from frahm.design.designing import design_absorber, verified_designs
+from frahm.design.objective import Objective
 from frahm.design.pareto import pareto_front
 from frahm.design.settings import DesignSettings
 from frahm.design.store import save_design
@@ -11,8 +12,10 @@ __all__ = [
     "DesignSettings",
     "DesignStudy",
     "DesignedAbsorber",
+    "Objective",
     "Rival",
     "design_absorber",
+    "parameters_text",
     "pareto_front",
     "save_design",
     "verified_designs",

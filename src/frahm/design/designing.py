@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +28,6 @@ from frahm.errors import ParameterError
 from frahm.systems import System, build_system
 
 if TYPE_CHECKING:
-    import os
     from collections.abc import Mapping
 
 Progress = Callable[[str, int, int], None]
@@ -51,6 +52,7 @@ class _Found:
     tolerance: ToleranceBand | None = None
     sensitivities: tuple[Sensitivity, ...] = ()
     built: Verification | None = None
+    built_margin: float = math.nan
     discarded: list[str] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
 
@@ -144,7 +146,7 @@ class _Designing:
         families = ["sink", "tuned", "mixed"]
         if self.settings.family == "tuned":
             families = ["tuned", "sink", "mixed"]
-        self.total = len(families) + 3 + len(self.settings.margins) + 5
+        self.total = len(families) + 4 + 5
         for family in families:
             rival = self.designed(family)
             if family == self.settings.family:
@@ -180,16 +182,18 @@ class _Designing:
             parts.append(f"spring stress {self.limits.stress:g} Pa")
         return ", ".join(parts)
 
-    def _finalists(self, family: str, limits: Limits) -> list[Finalist]:
-        tier = self._tier(family, limits.force_margin)
-        kept, discarded = finalists(tier, self.system_of, self.problem.windows, self.problem.disturbances, limits)
-        self.found.discarded += [f"{_DEVICES[family]}: {reason}" for reason in discarded]
-        return kept
+    def _finalists(self, family: str, limits: Limits) -> tuple[list[Finalist], list[str]]:
+        """Finalists of a family under limits, and why others were discarded."""
+        problem = self.problem
+        tier = problem.tier(family, limits.force_margin)
+        kept, discarded = finalists(tier, self.system_of, problem.windows, problem.disturbances, limits)
+        return kept, [f"{_DEVICES[family]}: {reason}" for reason in discarded]
 
     def designed(self, family: str) -> Rival | None:
         """Best verified design of a family: finalists in the order of what is expected of them."""
         self._step(f"search: {_DEVICES[family]}")
-        waiting = self._finalists(family, self.limits)
+        waiting, discarded = self._finalists(family, self.limits)
+        self.found.discarded += discarded
         best = self._cornered(family)
         for finalist in waiting[:_MOST_FINALISTS]:
             if best is not None and best.verified and finalist.predicted >= best.value:
@@ -288,7 +292,9 @@ class _Designing:
             self.case.pipe.mass,
         )  # fmt: skip
         if design.kappa and not design.quintic:
-            found.built = self._worst(build_system(as_built(self.case, design, stroke, room)))
+            built, most = build_system(as_built(self.case, design, stroke, room)), 1.1 * settings.force_margin
+            found.built = self._worst(built)
+            found.built_margin, _ = exact_birth(built, problem.windows, problem.disturbances, best.force_margin, most)
 
     def _error_table(self) -> None:
         """Every device at every frequency error, not retuned."""
@@ -299,18 +305,14 @@ class _Designing:
         for name, rival in sorted(self.found.rivals.items()):
             self._step(f"frequency errors: {name}")
             system = self._rival_system(rival)
-            rows = [
-                glimpse(
-                    system,
-                    windows,
-                    Disturbance(pipe_frequency=r),
-                    objective,
-                    samples=_TABLE_SAMPLES,
-                    seed=self.settings.seed,
-                    periods=_TABLE_PERIODS,
-                )
-                for r in self.settings.errors
-            ]
+
+            def row(error: float, system: System = system) -> Verification:
+                return glimpse(
+                    system, windows, Disturbance(pipe_frequency=error), objective, samples=_TABLE_SAMPLES,
+                    seed=self.settings.seed, periods=_TABLE_PERIODS,
+                )  # fmt: skip
+
+            rows = in_threads(row, self.settings.errors)
             self.found.table[name] = tuple(row.pipe_peak for row in rows)
             self.found.sure[name] = tuple(row.verified for row in rows)
 
@@ -326,16 +328,26 @@ class _Designing:
         family = self.settings.family
         if family == "tuned":
             return
-        for margin in self.settings.margins:
-            self._step(f"force margin {margin:g}")
-            kept = self._finalists(family, replace(self.limits, force_margin=margin))
+        best = self.found.best
+        self._step("force margins")
+        self._tier(family)  # finds its place once
+
+        def point(margin: float) -> tuple[MarginPoint | None, list[str]]:
+            if best is not None and best.design is not None and margin == self.settings.force_margin:
+                return MarginPoint(margin, best.design, best.value, best.worst_pipe_peak, best.verified, best.tier), []
+            kept, discarded = self._finalists(family, replace(self.limits, force_margin=margin))
             if not kept:
-                continue
+                return None, discarded
             design = kept[0].design
             checked = self._verify(with_design(self.case, design))
-            self.found.trade_off.append(
-                MarginPoint(margin, design, checked.value, checked.pipe_peak, checked.verified, checked.tier)
-            )
+            return MarginPoint(
+                margin, design, checked.value, checked.pipe_peak, checked.verified, checked.tier
+            ), discarded
+
+        for found, discarded in in_threads(point, self.settings.margins):
+            self.found.discarded += discarded
+            if found is not None:
+                self.found.trade_off.append(found)
 
     def study(self, interrupted: bool) -> DesignStudy:
         found, best = self.found, self.found.best
@@ -372,6 +384,7 @@ class _Designing:
             tolerance=found.tolerance,
             sensitivities=found.sensitivities,
             as_built=found.built.pipe_peak if found.built else math.nan,
+            as_built_margin=found.built_margin,
             screened=self.problem.screened,
             discarded=tuple(dict.fromkeys(found.discarded)),
             verdict=verdict(rivals, self.settings.errors, found.table, self.settings.scatter, self.objective),
@@ -379,6 +392,16 @@ class _Designing:
             interrupted=interrupted,
             version=__version__,
         )
+
+
+def in_threads(function: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
+    """The function of every item, in their order; a thread per core."""
+    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
+        try:
+            return list(pool.map(function, items))
+        except KeyboardInterrupt:
+            pool.shutdown(cancel_futures=True)
+            raise
 
 
 def _rival(name: str, design: DesignedAbsorber | None, checked: Verification, force_margin: float) -> Rival:

@@ -117,7 +117,8 @@ class Problem:
             except ParameterError:  # the governing mode does not move there
                 known[place] = math.inf
                 return
-            known[place] = float(np.min(tier.predicted(tier.grid_judged, self.limits, Corrections())))
+            best = tier.best(self.limits, Corrections())
+            known[place] = math.inf if best is None else best[1]
             self._tried += tier.count
 
         for place in np.linspace(lo, hi, _PLACES):

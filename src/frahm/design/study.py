@@ -111,6 +111,8 @@ class DesignStudy:
     sensitivities : tuple of Sensitivity
     as_built : float
         Worst pipe peak [m] with the exact force of the transverse springs of the sheet; NaN if there are none.
+    as_built_margin : float
+        Largest factor on the force [-] up to which these springs have no detached curve.
     screened : int
         Designs judged by the closed form.
     discarded : tuple of str
@@ -135,6 +137,7 @@ class DesignStudy:
     tolerance: ToleranceBand | None
     sensitivities: tuple[Sensitivity, ...]
     as_built: float
+    as_built_margin: float
     screened: int
     discarded: tuple[str, ...]
     verdict: str
@@ -173,7 +176,7 @@ class DesignStudy:
             ],
             "hardware": hardware_rows(self.hardware),
             "warnings": list(self.hardware.warnings) if self.hardware else [],
-            "as_built": {"pipe_peak": self.as_built},
+            "as_built": {"pipe_peak": self.as_built, "force_margin": self.as_built_margin},
             "tolerance": tolerance_row(self.tolerance),
             "sensitivities": [vars(item) for item in self.sensitivities],
             "screened": self.screened,

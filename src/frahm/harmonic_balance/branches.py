@@ -159,10 +159,11 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
     else:
         parts = [stiffness_at(pb, 1, float(W)) for W in grid]
         S, F = (np.array([part[which].flat[0] for part in parts]) for which in (0, 1))
-        if table is not None:
-            counts, excess = table_counts(pb, table, grid, S, F)
-        elif e is not None:
-            counts, excess = polynomial_counts(e, S, F)
+        counts, excess = np.zeros(_GRID, np.int64), np.full(_GRID, -math.inf)
+        found = [] if e is None else [polynomial_counts(e, S, F)]
+        found += [] if table is None else [table_counts(pb, table, grid, S, F)]
+        for number, near_miss in found:
+            counts, excess = counts + number, np.maximum(excess, near_miss)
     edges = np.flatnonzero(np.diff(counts)) + 1
     runs = np.split(np.arange(_GRID), edges)
     middles = [grid[run[len(run) // 2]] for run in runs]
@@ -189,9 +190,9 @@ def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
     complete_at, beside, almost = seed_frequencies(search)
     seeds = [seed for W in complete_at for seed in seeder.at(float(W), search.x_scale)]
     seeds += [seed for W in beside for seed in seeder.at(float(W), search.x_scale) if 3 in seed.harmonics]
-    if seeder.table is None and seeder.spring is not None:
+    if seeder.spring is not None:
         seeds += [seed for W in almost for seed in almost_seeds(search.problem, float(W), seeder.spring)]
-    else:
+    if seeder.table is not None:
         seeds += [seed for W in almost for seed in seeder.at(float(W), search.x_scale)]
     about_others = [seed for seed in seeds if odd and 0 in seed.harmonics]
     _follow_new(search, [seed for seed in seeds if not odd or 0 not in seed.harmonics], tracks)

@@ -2,7 +2,7 @@
 
 Branches start from these roots, so a detached curve is met only where a frequency inside its range is looked at. With
 one cubic spring the number of roots is known in closed form. With any other law of one element it is counted here on
-a dense grid of amplitudes: |S + N(a)| a passes |F| once for every root, and nearly where two of them are about to appear.
+a dense grid of amplitudes: |S + N(a)| a passes |F| once for every root, and comes near where two are about to appear.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _FRICTION_POINTS = 400
 
 @kernel
 def _counted(S, F, a, N, before, after, counts, excess):
-    """Fill counts (W,) and excess (W,) from S and |F| (W,), amplitudes a (rows,), N (W or 1, rows), neighbours (rows,)."""
+    """Fill counts and excess (W,) from S and |F| (W,), amplitudes a (rows,), N (W or 1, rows), neighbours (rows,)."""
     for w in range(S.size):
         M = N[min(w, N.shape[0] - 1)]
         counts[w], excess[w] = 0, -math.inf
@@ -48,7 +48,7 @@ def table_counts(pb: Problem, table: Table, W: Floats, S: Complexes, F: Complexe
     before, after = (np.full(table.amplitude.size, -1) for _ in range(2))
     i, j = table.links.T
     after[i], before[j] = j, i
-    N = d * d * table.stiffness.astype(complex)[None, :]
+    N: Complexes = (d * d * table.stiffness[None, :]).astype(complex)
     if pb.rates:
         # the stiffness of friction is a function of a W over a: one table serves all frequencies
         speeds = np.geomspace(table.amplitude.min() * W[0], table.amplitude.max() * W[-1], _FRICTION_POINTS)
@@ -56,7 +56,7 @@ def table_counts(pb: Problem, table: Table, W: Floats, S: Complexes, F: Complexe
         friction_stiffness(pb, speeds, 1.0, unit)
         at = np.log(table.amplitude[None, :] * W[:, None])
         force = np.interp(at, np.log(speeds), unit * speeds)
-        N = N + 1j * d * d * force / table.amplitude
+        N = np.asarray(N + 1j * d * d * force / table.amplitude)
     return _counts(S, F, table.amplitude / abs(d), N, before, after)
 
 

@@ -36,17 +36,18 @@ def save_design_figures(data: xr.Dataset, folder: str | Path) -> list[Path]:
 
 
 def comparison_figure(data: xr.Dataset) -> Figure:
-    """Worst pipe peak of every device as bars; what is unverified is hatched."""
+    """Value of the objective of every device as bars; what is unverified is hatched."""
     names = data["comparison_pipe_peak"].attrs["names"].split(", ")
-    peaks, sure = data["comparison_pipe_peak"].values, data["comparison_verified"].values.astype(bool)
+    peaks, sure = data["comparison_value"].values, data["comparison_verified"].values.astype(bool)
+    title, unit = _titled(data["comparison_value"])
     figure = new_figure(160, 22 + 11 * len(names))
     axes = figure.subplots()
     for row, (name, peak, verified) in enumerate(zip(names, peaks, sure, strict=True)):
         color = _LOOKS[name][0]
         axes.barh(row, peak, color=color if verified else "white", edgecolor=color, hatch=None if verified else "///")
-        words = f"{peak:#.3g} m" + ("" if verified else ", unverified")
+        words = f"{peak:#.3g} {unit}".rstrip() + ("" if verified else ", unverified")
         axes.annotate(words, (peak, row), (4, 0), textcoords="offset points", va="center", color=INK)
-    axes.set(xlim=(0, 1.2 * np.max(peaks)), xlabel="worst pipe peak of all attractors [m]")
+    axes.set(xlim=(0, 1.2 * np.max(peaks)), xlabel=f"{title} over all attractors [{unit or '-'}]")
     axes.set_yticks(range(len(names)), [_LABELS.get(name, name) for name in names])
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
@@ -71,8 +72,9 @@ def frequency_error_figure(data: xr.Dataset) -> Figure:
 
 
 def margin_figure(data: xr.Dataset) -> Figure:
-    """Worst pipe peak of the best design under every force margin."""
-    margin, peaks = data["force_margin"].values, data["margin_pipe_peak"].values
+    """Value of the objective of the best design under every force margin."""
+    margin, peaks = data["force_margin"].values, data["margin_value"].values
+    title, unit = _titled(data["margin_value"])
     figure = new_figure(160, 85)
     axes = figure.subplots()
     axes.plot(margin, peaks, "-o", color=VERMILLION, markersize=5)
@@ -90,5 +92,13 @@ def margin_figure(data: xr.Dataset) -> Figure:
     spread = float(np.ptp(peaks)) or 0.1 * float(peaks[0])
     axes.set_ylim(float(np.min(peaks)) - 0.45 * spread, float(np.max(peaks)) + 0.15 * spread)
     axes.margins(x=0.12)
-    axes.set(xlabel="force up to which no detached curve exists, over the force given", ylabel="worst pipe peak [m]")
+    axes.set(
+        xlabel="force up to which no detached curve exists, over the force given", ylabel=f"{title} [{unit or '-'}]"
+    )
     return figure
+
+
+def _titled(variable: xr.DataArray) -> tuple[str, str]:
+    """Long name and unit of a variable; no unit for a plain number."""
+    unit = variable.attrs["units"]
+    return variable.attrs["long_name"], "" if unit == "1" else unit

@@ -8,9 +8,11 @@ from typing import Any
 
 import jinja2
 
-from frahm.design import DesignStudy, Rival
+from frahm.case import Design, field_table, field_values
+from frahm.design import DesignStudy, Objective, Rival
 from frahm.errors import ParameterError
 from frahm.files import write_text
+from frahm.loads import vortex_shedding
 from frahm.plotting.design_figures import save_design_figures
 from frahm.report.report import REPORT_FILE, image_address
 from frahm.report.tables import number
@@ -43,23 +45,35 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         loader=jinja2.PackageLoader("frahm.report", "."), autoescape=True, trim_blocks=True, lstrip_blocks=True,
         keep_trailing_newline=True, undefined=jinja2.StrictUndefined,
     )  # fmt: skip
+    objective = study.objective
     return environment.get_template("design.html.jinja").render(
         study=study,
         status="pass" if study.verified else "unverified",
         headline=headline(study),
-        comparison=[comparison_row(rival) for rival in study.comparison],
+        asked=asked_rows(study),
+        comparison_head=comparison_head(objective),
+        comparison=[*(comparison_row(rival, objective) for rival in study.comparison), ropes_row(objective)],
         error_head=["Device", *(f"{100 * (r - 1):+.3g} %" if r != 1 else "0 %" for r in study.errors)],
         error_rows=error_rows(study),
         trade_off=[
             (f"{p.force_margin:g}", number(p.design.linear), number(p.design.kappa, 5), number(p.design.xi2),
-             number(p.worst_pipe_peak), "yes" if p.verified else "no")
+             number(p.value), "yes" if p.verified else "no")
             for p in study.trade_off
         ],
         hardware=hardware_rows(study),
         sensitivities=sensitivity_rows(study),
+        objective_title=_titled(objective),
+        least_stroke=least_stroke(study),
         plots={},
         images=images,
     )  # fmt: skip
+
+
+def least_stroke(study: DesignStudy) -> str:
+    """The stroke below which no absorber of the mass can balance the force, at the pipe's frequency [m]."""
+    ratio = study.best.design.rho2 if study.best.design else math.nan
+    case = study.case
+    return number(vortex_shedding(case).lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
 
 
 def headline(study: DesignStudy) -> str:
@@ -70,16 +84,61 @@ def headline(study: DesignStudy) -> str:
     return f"? {len(study.unverified)} unverified; {best}"
 
 
-def comparison_row(rival: Rival) -> tuple[str, ...]:
+def asked_rows(study: DesignStudy) -> list[tuple[str, ...]]:
+    """What was asked for: name, value, unit, and whether it was left at its default."""
+    facts, settings = field_table(Design), study.settings
+    rows: list[tuple[str, ...]] = []
+    for field in field_values(settings):
+        if field.path in ("errors", "margins"):
+            continue
+        about = facts[field.path]
+        values = field.value if isinstance(field.value, tuple) else (field.value,)
+        text = " ... ".join(number(value, 5) if isinstance(value, float) else str(value) for value in values)
+        if field.path.startswith("scatter.") and not field.value:
+            continue
+        rows.append((about.title, text, about.unit or "-", "" if field.given else "default"))
+    return rows
+
+
+def comparison_head(objective: Objective) -> list[str]:
+    """Head of the comparison."""
+    more = [] if _is_peak(objective) else [_titled(objective)]
+    return [
+        "Device", "ρ₂", "linear [1/s²]", "κ [1/(m² s²)]", "ξ₂ [1/s]", *more, "Worst pipe peak [m]", "Motion",
+        "Stroke [m]", "Force margin", "Rests on", "Verified",
+    ]  # fmt: skip
+
+
+def comparison_row(rival: Rival, objective: Objective) -> tuple[str, ...]:
     """Name, parameters, worst peaks, force margin, what the numbers rest on."""
     design = rival.design
     parameters: tuple[Any, ...] = ("-",) * 4
+    name = _NAMES.get(rival.name, rival.name)
     if design is not None:
         parameters = tuple(number(getattr(design, name), 4) for name in ("rho2", "linear", "kappa", "xi2"))
+        name += f", fifth power {number(design.quintic)} 1/(m⁴ s²)" if design.quintic else ""
+        name += f", at {number(design.position)} m" if design.position is not None else ""
+    more = () if _is_peak(objective) else (number(rival.value),)
     return (
-        _NAMES.get(rival.name, rival.name), *parameters, number(rival.worst_pipe_peak), rival.kind,
-        number(rival.relative_peak), _margin(rival.force_margin), _basis(rival), "yes" if rival.verified else "no",
+        name, *parameters, *more, number(rival.worst_pipe_peak), rival.kind, number(rival.relative_peak),
+        _margin(rival.force_margin), _basis(rival), "yes" if rival.verified else "no",
     )  # fmt: skip
+
+
+def ropes_row(objective: Objective) -> tuple[str, ...]:
+    """The real competitor, which this program does not compute."""
+    more = () if _is_peak(objective) else ("-",)
+    rests = "experience: three 25 mm ropes, 120° apart, pitch 1 m, cured Statfjord A"
+    return ("helical ropes", *("-",) * 4, *more, "not computed", "-", "0", "-", rests, "-")
+
+
+def _is_peak(objective: Objective) -> bool:
+    return objective.name == "peak" and objective.quantile is None
+
+
+def _titled(objective: Objective) -> str:
+    title = objective.title[0].upper() + objective.title[1:]
+    return f"{title} [{'m' if objective.unit == 'm' else '-'}]"
 
 
 def error_rows(study: DesignStudy) -> list[tuple[str, ...]]:

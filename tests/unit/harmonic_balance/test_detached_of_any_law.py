@@ -6,7 +6,7 @@ import pytest
 import frahm
 from frahm.harmonic_balance.condensation import condense
 from frahm.harmonic_balance.root_counts import polynomial_counts
-from frahm.harmonic_balance.seeds import amplitude_roots, spring_polynomial, stiffness_at
+from frahm.harmonic_balance.seeds import amplitude_roots, seeder_for, spring_polynomial, stiffness_at
 from frahm.systems import with_parameters
 
 CASE = frahm.load_case("jacket-pipe")
@@ -63,3 +63,17 @@ def test_roots_are_counted_as_the_polynomial_has_them():
     # two roots nearer than the grid of amplitudes are one near miss
     assert np.mean(counts == exact) > 0.98
     assert np.all(excess[counts != exact] > -0.05)
+
+
+@pytest.mark.parametrize("place", [27.0, 28.7, 30.8625, 31.2])
+def test_a_sink_anywhere_on_an_elastic_pipe_does_not_look_as_if_it_had_two_wells(place):
+    """The static stiffness that holds a sink is zero; its rounding, negative at some places, hid detached curves."""
+    case = frahm.load_case("jacket-pipe-elastic").with_absorber(kappa=2847.87, xi2=0.057257, position=place)
+    system, omega = frahm.build_system(case), case.pipe.frequency
+    window = (0.7 * omega, 1.3 * omega)
+    assert not seeder_for(condense(system), np.linspace(*window, 5)).buckled
+    births = [e.value for e in frahm.detached_curve_events(system, "force", (0.4, 1.6)) if e.kind == "birth"]
+    assert births
+    for factor, there in ((0.99, False), (1.02, True)):
+        curve = frahm.frequency_response(with_parameters(system, force=factor * births[0]), frequency=window)
+        assert any(curve.detached) == there
