@@ -146,7 +146,8 @@ def headline(analysis: Analysis) -> tuple[str, str]:
     failed = sum(check.status == "fail" for check in analysis.checks)
     doubts = len(analysis.unverified) + sum(check.status == "unverified" for check in analysis.checks)
     if failed:
-        return "fail", f"✗ {failed} of {len(analysis.checks)} checks failed"
+        more = f", {doubts} unverified" if doubts else ""
+        return "fail", f"✗ {failed} of {len(analysis.checks)} checks failed{more}"
     if doubts:
         return "unverified", f"? {doubts} unverified"
     return "pass", f"✓ all checks passed ({len(analysis.checks)})"
