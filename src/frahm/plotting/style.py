@@ -65,7 +65,7 @@ def save_figure(figure: Figure, stem: str | Path) -> list[Path]:
     arrange(figure)
     for path in paths:
         metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-        packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 3}} if path.suffix == ".png" else {}
+        packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}} if path.suffix == ".png" else {}
         with written_beside(path) as temporary:
             figure.savefig(temporary, dpi=160, metadata=metadata, **packed)
     return paths

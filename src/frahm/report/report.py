@@ -138,7 +138,7 @@ def packed_plotly() -> str:
     script = pkgutil.get_data("plotly", "package_data/plotly.min.js")
     if script is None:
         raise RuntimeError("plotly is installed without its package_data/plotly.min.js")
-    return base64.b64encode(zlib.compress(script, 6)).decode()
+    return base64.b64encode(zlib.compress(script, 4)).decode()
 
 
 def headline(analysis: Analysis) -> tuple[str, str]:
