@@ -7,6 +7,7 @@ import numpy as np
 
 import frahm
 from frahm.design import DesignSettings, verified_designs
+from frahm.design.disturbance import Disturbance
 from frahm.design.host import host_of
 from frahm.design.screening import Screening
 
@@ -17,10 +18,10 @@ DESIGNS, FREQUENCIES = 1_000_000, 400
 
 def test_screening_of_a_million_designs(benchmark):
     omega = HOST.frequency
-    conditions = HOST.conditions([1.0], (omega - 0.4, omega + 0.4), FREQUENCIES, moving=False)
+    conditions = HOST.conditions([Disturbance()], (omega - 0.4, omega + 0.4), FREQUENCIES, moving=False)
     screening = Screening(HOST, conditions, conditions)
     rng = np.random.default_rng(1)
-    designs = np.zeros((DESIGNS, 4))
+    designs = np.zeros((DESIGNS, 5))
     designs[:, 0] = 0.02 * 247
     designs[:, 2] = 247 * 10 ** rng.uniform(2, 4, DESIGNS)
     designs[:, 3] = 247 * 10 ** rng.uniform(-2.5, -0.7, DESIGNS)

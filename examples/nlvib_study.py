@@ -15,9 +15,11 @@ import numpy as np
 
 import frahm
 from frahm.design import DesignedAbsorber, DesignSettings
+from frahm.design.disturbance import Disturbance
 from frahm.design.exact import Windows
 from frahm.design.finalists import finalists
 from frahm.design.host import host_of
+from frahm.design.objective import Objective
 from frahm.design.screening import Screening
 from frahm.design.search import Limits, TierOne
 from frahm.design.space import design_space
@@ -74,7 +76,9 @@ def study(samples: int = 200) -> Study:
     at = int(np.argmax(rms))
     motion = frahm.integrate(system, frequency=0.970, periods=3000)
     best = designed()
-    found = verification(system_of(best), Windows(WINDOW, WIDE, False), [1.0], samples=samples, seed=1)
+    found = verification(
+        system_of(best), Windows(WINDOW, WIDE, False), [Disturbance()], Objective(), samples=samples, seed=1
+    )
     return Study(
         reported_rms=float(rms[at]),
         reported_stable=bool(branch.stable[first][at]),
@@ -90,12 +94,12 @@ def designed() -> DesignedAbsorber:
     host, windows = host_of(system_of(REPORTED)), Windows(WINDOW, WIDE, False)
     screening = Screening(
         host,
-        host.conditions([1.0], WINDOW, 161, moving=False, forces=(1.0, MARGIN)),
-        host.conditions([1.0], WIDE, 481, moving=False),
+        host.conditions([Disturbance()], WINDOW, 161, moving=False, forces=(1.0, MARGIN)),
+        host.conditions([Disturbance()], WIDE, 481, moving=False),
     )
     space = design_space(host, 1.0, "sink", DesignSettings(mass_ratio=REPORTED.rho2))
     limits = Limits(MARGIN, math.inf, stable=False)
-    kept, _ = finalists(TierOne(screening, space), system_of, windows, [1.0], limits)
+    kept, _ = finalists(TierOne(screening, space, Objective(), limits), system_of, windows, [Disturbance()], limits)
     return kept[0].design
 
 

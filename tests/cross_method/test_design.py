@@ -8,7 +8,12 @@ import pytest
 import frahm
 from frahm.analysis.long_term import worst
 from frahm.analysis.section import Work
-from frahm.design import DesignSettings
+from frahm.design import DesignSettings, with_design
+from frahm.design.exact import exact_judgement
+from frahm.design.finalists import finalists
+from frahm.design.problem import Problem
+from frahm.design.search import PEAKS, Corrections
+from frahm.design.settings import settings_for
 from frahm.design.store import save_design
 
 CASE = frahm.load_case("jacket-pipe")
@@ -65,3 +70,22 @@ def test_every_variable_has_units_and_a_name(study):
     data = study.to_dataset()
     assert all({"units", "long_name"} <= data[name].attrs.keys() for name in data.variables)
     assert np.all(np.isfinite(data["error_pipe_peak"]))
+
+
+def test_designs_the_closed_form_is_wrong_about_are_left_for_better_ones():
+    """In a narrow window weakly damped sinks look good to one harmonic; exactly they respond five times as much."""
+    case = CASE.with_analysis(detuning=(-0.05, 0.02))
+    problem = Problem.of(case, settings_for(case))
+    tier = problem.tier("sink")
+    looks, _ = tier.best(problem.limits, Corrections())
+    exact = exact_judgement(
+        frahm.build_system(with_design(case, tier.space.absorber(looks))), problem.windows, problem.disturbances
+    )
+    assert exact.pipe_peak > 3 * tier.judge(looks[None])[0, PEAKS]
+    kept, discarded = finalists(
+        tier, lambda design: frahm.build_system(with_design(case, design)), problem.windows, problem.disturbances,
+        problem.limits,
+    )  # fmt: skip
+    assert any("one harmonic does not show" in reason for reason in discarded)
+    assert kept
+    assert all(finalist.exact.pipe_peak < 0.3 * exact.pipe_peak for finalist in kept)

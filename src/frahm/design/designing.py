@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 
 Progress = Callable[[str, int, int], None]
 _MOST_FINALISTS = 4
+_WORSE, _WORSE_MEAN = 1.25, 2.0  # verified over expected value from where on a finalist is worse than it looked
+_ATTEMPTS = 3  # searches of a family whose finalists all fail
+_ALIKE = 0.01  # relative difference of all parameters below which two finalists are one
 _JUMP = 1.1  # a design whose peak grows by more than this beside the force has met a detached curve
 _MARGIN_SAMPLES = 40
 _TABLE_SAMPLES, _TABLE_PERIODS = 8, 1000
@@ -192,10 +195,24 @@ class _Designing:
     def designed(self, family: str) -> Rival | None:
         """Best verified design of a family: finalists in the order of what is expected of them."""
         self._step(f"search: {_DEVICES[family]}")
-        waiting, discarded = self._finalists(family, self.limits)
-        self.found.discarded += discarded
         best = self._cornered(family)
-        for finalist in waiting[:_MOST_FINALISTS]:
+        for _ in range(_ATTEMPTS):
+            waiting, discarded = self._finalists(family, self.limits)
+            self.found.discarded += discarded
+            best, failed = self._tried(family, _apart(waiting)[:_MOST_FINALISTS], best)
+            if not failed:
+                break
+            # the closed form does not see what is wrong with these: what is best elsewhere is looked for
+            for design in failed:
+                self.problem.avoid(family, design)
+        return best
+
+    def _tried(
+        self, family: str, waiting: list[Finalist], best: Rival | None
+    ) -> tuple[Rival | None, list[DesignedAbsorber]]:
+        """Best of the finalists by all attractors, and those that are worse than they looked or unverified."""
+        failed: list[DesignedAbsorber] = []
+        for finalist in waiting:
             if best is not None and best.verified and finalist.predicted >= best.value:
                 continue
             checked = self._verify(with_design(self.case, finalist.design))
@@ -205,7 +222,11 @@ class _Designing:
                 self._discard(
                     rival, f"with {self.settings.force_margin:g} times the force it is {more.pipe_peak:.4g} m"
                 )
+                failed.append(finalist.design)
                 continue
+            worse = _WORSE_MEAN if self.objective.over_climate else _WORSE
+            if not rival.verified or checked.value > worse * finalist.predicted:
+                failed.append(finalist.design)
             if best is None or (rival.verified, -rival.value) > (best.verified, -best.value):
                 if best is not None and not best.verified:
                     self._discard(best, f"unverified: {' '.join(best.unverified[:1])}")
@@ -214,7 +235,7 @@ class _Designing:
                     self.found.with_margin = more
             else:
                 self._discard(rival, "it is not better")
-        return best
+        return best, failed
 
     def _cornered(self, family: str) -> Rival | None:
         """For the mixture, the better of its corners: the optimum over the family is never worse than either."""
@@ -394,6 +415,19 @@ class _Designing:
         )
 
 
+def _apart(waiting: list[Finalist]) -> list[Finalist]:
+    """Finalists in their order, without those that hardly differ from an earlier one."""
+    chosen: list[Finalist] = []
+    for finalist in waiting:
+        here = finalist.design.parameters
+        known = (other.design.parameters for other in chosen)
+        if not any(
+            all(math.isclose(here[key], there.get(key, 0.0), rel_tol=_ALIKE) for key in here) for there in known
+        ):
+            chosen.append(finalist)
+    return chosen
+
+
 def in_threads(function: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
     """The function of every item, in their order; a thread per core."""
     with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
@@ -415,7 +449,7 @@ def _rival(name: str, design: DesignedAbsorber | None, checked: Verification, fo
         error=checked.disturbance.pipe_frequency,
         frequency=checked.frequency,
         kind=checked.kind,
-        force_margin=force_margin,
+        force_margin=float(force_margin),
         verified=checked.verified,
         tier=checked.tier,
         samples=checked.samples,

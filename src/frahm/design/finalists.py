@@ -27,6 +27,7 @@ _SHORT = 1.5e-3  # by which an exact birth may fall short of the margin while th
 _LEAST_DECAY = 4.5e-3  # per period: slower motions do not settle within the periods of the attractor search
 _MISSED = 2e-3  # of the force: a detached curve so near its birth may be too small to be met
 _TRUSTED = (0.95, 1.1)  # ratios of exact to screened peaks beyond these tell of a jump, not of a trend
+_JUMPED = 1.3  # ratio from where on the search goes elsewhere
 _FAR = 1.1  # of the margin: how far a birth is looked for
 
 
@@ -83,6 +84,11 @@ def finalists(
             row, _ = found
             judged = tier.judge(row[None])
             finalist, birth = _judged(tier, row, judged, system_of, windows, disturbances, limits, corrections)
+            rows = slice(PEAKS, PEAKS + len(tier.screening.conditions.forces))
+            if np.any(np.resize(finalist.exact.peaks, rows.stop - PEAKS) > _JUMPED * judged[0, rows]):
+                tier.avoid(row)  # the exact equations have a branch there that the closed form does not see
+                discarded.append(_jump(finalist))
+                continue
             short = limits.force_margin - finalist.force_margin
             lazy = stable and finalist.exact.growth_rate > -0.5 * decay
             wide = finalist.exact.relative_peak > limits.stroke * 1.0005
@@ -141,6 +147,14 @@ def _corrected(
         stroke=exact.relative_peak / judged[STROKE],
         birth=(birth - 1.5 * _MISSED) / judged[BIRTH] if known else old.birth,
         damping=decay + offset if math.isfinite(decay) and math.isfinite(offset) else old.damping,
+    )
+
+
+def _jump(finalist: Finalist) -> str:
+    d = finalist.design
+    return (
+        f"kappa {d.kappa:.5g}, linear {d.linear:.4g}, xi2 {d.xi2:.4g}: the exact equations have a response of"
+        f" {max(finalist.exact.peaks):.4g} m that one harmonic does not show."
     )
 
 

@@ -100,6 +100,12 @@ class Problem:
             self.tiers[family, most] = self._tier(family, most, self.place(family))
         return self.tiers[family, most]
 
+    def avoid(self, family: str, design: DesignedAbsorber) -> None:
+        """Search a family no longer near a design that failed."""
+        tier = self.tier(family)
+        values = (design.rho2, design.linear, design.kappa, design.xi2, design.quintic)
+        tier.avoid(np.array([value * self.case.pipe.mass for value in values]))
+
     def place(self, family: str) -> float | None:
         """Position of the absorber that is best by the closed form [m]; None where none is asked for."""
         if self.settings.position is None:

@@ -6,7 +6,7 @@ import copy
 import dataclasses
 import itertools
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.stats import qmc
@@ -23,6 +23,7 @@ _SOBOL = 2**14  # designs of the first look at more parameters
 _MEMBERS, _GENERATIONS, _SEED = 36, 80, 1
 _STARTS = 8
 _RESERVE = 1.05  # on the screened stroke, where springs must fit
+_AVOIDED = 0.15  # of the cube: how near a design that failed is not searched again
 _APART = 0.08  # of the cube: starts are at least so far from one another
 
 
@@ -87,6 +88,7 @@ class TierOne:
     objective: Objective
     limits: Limits
     count: int = 0
+    avoided: list[Floats] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         if self.space.size in _GRID:
@@ -141,7 +143,7 @@ class TierOne:
         """
         from scipy.optimize import differential_evolution
 
-        values = self.predicted(self.grid_judged, limits, corrections)
+        values = self._allowed(self.grid, self.predicted(self.grid_judged, limits, corrections))
         members = self._members(values)
         if not len(members):
             return None
@@ -149,6 +151,7 @@ class TierOne:
 
         def objective(units: Floats) -> Floats:
             peaks = self.predicted(self.judge(self.space.designs(units.T)), limits, corrections)
+            peaks = self._allowed(units.T, peaks)
             return np.where(np.isfinite(peaks), peaks, worst)
 
         found = differential_evolution(
@@ -156,6 +159,16 @@ class TierOne:
             updating="deferred", polish=False, seed=_SEED, tol=1e-6, mutation=(0.4, 0.9), recombination=0.9,
         )  # fmt: skip
         return self.space.designs(found.x[None])[0], float(found.fun)
+
+    def avoid(self, design: Floats) -> None:
+        """Search no longer near a design (5,), because it was found worse than it looked."""
+        self.avoided.append(self.space.units(design[None])[0])
+
+    def _allowed(self, units: Floats, values: Floats) -> Floats:
+        """Values (D,) at points (D, d) of the unit cube; infinite near those avoided."""
+        for point in self.avoided:
+            values = np.where(np.max(np.abs(units - point), axis=1) < _AVOIDED, np.inf, values)
+        return values
 
     def binding(self, limits: Limits) -> str:
         """Which limit leaves no design: the one without which most designs remain."""

@@ -63,6 +63,14 @@ class DesignSpace:
             found[:, column] = plain * (found[:, MASS] / self.mass) ** self.powers[at]
         return found
 
+    def units(self, designs: Floats) -> Floats:
+        """Points (D, d) of the unit cube of designs (D, 5); the way back of `designs`."""
+        values = np.empty((len(designs), self.size))
+        for at, column in enumerate(self.columns):
+            plain = designs[:, column] / (designs[:, MASS] / self.mass) ** self.powers[at]
+            values[:, at] = plain if column == LINEAR else np.log(plain)
+        return (values - self.lo) / (self.hi - self.lo)
+
     def absorber(self, design: Floats) -> DesignedAbsorber:
         """A row of `designs` in the parameters users know."""
         m, k1, k3, c, k5 = (float(value) / self.host_mass for value in design)
