@@ -7,7 +7,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 project = "frahm"
 author = "the frahm authors"
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
+html_math_renderer = "mathml"  # no script from elsewhere: formulas show without a network
 myst_enable_extensions = ["dollarmath", "amsmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "auto"  # a notebook without results is run
@@ -21,6 +22,7 @@ autodoc_typehints = "none"
 autodoc_member_order = "bysource"
 html_theme = "furo"
 html_title = "frahm"
+html_show_copyright = False
 html_static_path = ["_static"]
 html_css_files = ["tables.css"]
 exclude_patterns = ["_build", "_generated"]

@@ -1,62 +1,37 @@
-"""What the quickstart tells a newcomer to type, typed."""
+"""What the quickstart says; the path it leads along is walked in page/test_newcomer.py."""
 
 import re
-import shlex
-import subprocess
-import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
+import frahm
 from frahm.cli import app
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "quickstart.md").read_text(encoding="utf-8")
-LINES = [line for block in re.findall(r"```sh\n(.*?)```", PAGE, re.DOTALL) for line in block.splitlines()]
-COMMANDS = [shlex.split(line)[1:] for line in LINES if line.startswith(".venv/bin/frahm")]
 
 
-def test_every_make_target_exists():
-    targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
-    named = [line.split()[1] for line in LINES if line.startswith("make")]
-    assert named == ["run"]
-    assert set(named) <= set(targets)
-
-
-def test_the_page_leads_from_a_new_case_to_a_design():
-    assert [command[0] for command in COMMANDS] == ["app", "new", "check", "run", "show", "design"]
-
-
-@pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command[0])
-def test_every_command_exists(command):
-    assert CliRunner().invoke(app, [command[0], "--help"]).exit_code == 0
-
-
-def test_the_path_of_a_newcomer(tmp_path):
-    """As typed, up to the design, but for a case that takes less time: the pipe without absorbers."""
-
-    def typed(*words):
-        done = subprocess.run(
-            [sys.executable, "-m", "frahm", *words], cwd=tmp_path, capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stdout + done.stderr
-        return done.stdout
-
-    new, check, run, show = (next(c for c in COMMANDS if c[0] == name) for name in ("new", "check", "run", "show"))
-    typed(*new)
-    case = tmp_path / new[1]
-    typed(*check)
+def test_the_fields_of_the_page_are_those_of_a_case(tmp_path):
+    """What it says to put in goes into the file that `frahm new` writes."""
+    case = tmp_path / "my-pipe.yaml"
+    assert CliRunner().invoke(app, ["new", str(case)]).exit_code == 0
+    (snippet,) = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
     text = case.read_text(encoding="utf-8")
-    changed, count = re.subn(r"absorbers:\n(?:  .*\n)+", "absorbers: []\n", text)
-    assert count == 1
-    case.write_text(changed.replace("762 mm", "0.75 m"), encoding="utf-8")
-    typed(*run)
-    out = tmp_path / show[1]
-    for name in ("report.html", "summary.json", "results.nc", "figures"):
-        assert (out / name).exists(), name
-    assert "0.75" in (out / "report.html").read_text(encoding="utf-8")
-    assert "pipe" in typed(*show)
+    for line in snippet.splitlines()[1:]:
+        text, count = re.subn(rf"^{line.partition(':')[0]}:.*$", line, text, flags=re.MULTILINE)
+        assert count == 1
+    case.write_text(text, encoding="utf-8")
+    assert CliRunner().invoke(app, ["check", str(case)]).exit_code == 0
+    assert frahm.load_case(case).pipe.diameter == 0.762
+
+
+def test_what_the_page_installs_without_make_there_is():
+    (extras,) = re.findall(r'-e "\.\[([\w,]+)\]"', PAGE)
+    there = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    assert set(extras.split(",")) <= set(there)
 
 
 def test_a_typing_error_is_explained(tmp_path):

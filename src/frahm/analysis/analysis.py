@@ -62,8 +62,8 @@ STEPS = (
     Step("motions of the exact equations", motions),
     Step("slow flow against harmonic balance against integration", cross_check),
     Step("attractors at the design wind", attractors),
-    Step("basins at the design wind", basins),
     Step("worst case over the window", worst),
+    Step("basins where several motions last", basins),
     Step("fatigue over the wind climate", fatigue),
     Step("largest motion", largest_motion),
 )

@@ -61,7 +61,8 @@ def worst(work: Work) -> Section:
                 "not_excluded": found.not_excluded,
                 "frequencies_searched": len(found.surveys),
                 "verified": found.verified,
-            }
+            },
+            "coexisting": [_row(attractor) for survey in found.surveys if len(survey) > 1 for attractor in survey],
         },
         unverified=found.unverified,
     )

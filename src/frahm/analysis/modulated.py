@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 
 from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
@@ -52,12 +55,29 @@ def _checks(curve: ModulatedCurve) -> tuple[Check, ...]:
 
 
 def basins(work: Work) -> Section:
-    """Which attractor every initial displacement and velocity of the pipe leads to, where there are several."""
-    found = [a for a in work.done.results.get("attractors", []) if a["kind"] != "unsettled"]
-    if len(found) < 2:
+    """Which attractor every initial displacement and velocity of the pipe leads to, where there are several.
+
+    At the design wind if several motions last there, otherwise where the worst of the window is, if it is not alone.
+    """
+    detuning = _several_at(work.done.results)
+    if detuning is None:
         return Section()
     try:
-        data = basin_map(work.system, detuning=found[0]["detuning"], resolution=_RESOLUTION)
+        data = basin_map(work.system, detuning=detuning, resolution=_RESOLUTION)
     except ParameterError as refused:
-        return Section(notes=(f"The basins at the design wind were not mapped: {refused}",))
-    return Section(data={"basin_map": data})
+        return Section(notes=(f"The basins at the detuning {detuning:.4g} rad/s were not mapped: {refused}",))
+    return Section(results={"basin_map": {"detuning": detuning}}, data={"basin_map": data})
+
+
+def _several_at(results: dict[str, Any]) -> float | None:
+    """Detuning [rad/s] worth a map, None if no place is."""
+    worst = results.get("worst_case", {}).get("detuning")
+    beside = [
+        a for a in results.get("coexisting", [])
+        if a["basin_fraction"] > 0 and worst is not None and math.isclose(a["detuning"], worst, abs_tol=1e-9)
+    ]  # fmt: skip
+    for found in (results.get("attractors", []), beside):
+        settled = [a for a in found if a["kind"] != "unsettled"]
+        if len(settled) > 1:
+            return float(settled[0]["detuning"])
+    return None

@@ -69,6 +69,11 @@ def modulated_branches(
     workers : int, optional
         Threads; one per core by default. The result does not depend on it.
 
+    Returns
+    -------
+    ModulatedCurve
+        Envelopes [m] of every modulated response over the frequency, their stability and where it changes.
+
     Raises
     ------
     ParameterError

@@ -58,7 +58,7 @@ class Climate(Section):
     table: tuple[ClimateRow, ...] = Field(
         default=(),
         title="Table of winds",
-        description="Classes of wind, or the name of a CSV file with columns speed, probability, direction.",
+        description="Classes of wind, or the name of a CSV or MAT file with columns speed, probability, direction.",
     )
     direction_factor: Annotated[float, Quantity("", "f", at_least=0, at_most=1)] = Field(
         default=1.0,

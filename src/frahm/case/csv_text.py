@@ -1,4 +1,4 @@
-"""CSV in: tables a case refers to by file name, read beside the case file."""
+"""CSV and MAT in: tables a case refers to by file name, read beside the case file."""
 
 from __future__ import annotations
 
@@ -70,16 +70,19 @@ def csv_names(name: str) -> list[str]:
 
 
 def csv_rows(name: str, columns: Sequence[Column]) -> list[dict[str, float]]:
-    """Rows of a CSV file as numbers in SI units, by column name; to be called by validators.
+    """Rows of a CSV or MAT file as numbers in SI units, by column name; to be called by validators.
 
     Parameters
     ----------
     name : str
         File, relative to the folder of the case file. Comma or semicolon between cells, full stop in numbers, names
-        of the columns in the first line, lines that start with # left out.
+        of the columns in the first line, lines that start with # left out. A name that ends in .mat is a MAT file of
+        version 5 with a vector for every column, in SI units.
     columns : sequence of Column
         The columns there may be.
     """
+    if name.lower().endswith(".mat"):
+        return _mat_rows(name, columns)
     lines = _lines(name)
     cells = [line for _, line in lines]
     reader = csv.reader(io.StringIO("\n".join(cells)), delimiter=_separator(cells[0] if cells else ""))
@@ -96,6 +99,46 @@ def csv_rows(name: str, columns: Sequence[Column]) -> list[dict[str, float]]:
         values = zip(factors, row, strict=True)
         rows.append({column: factor * _number(name, number, column, cell) for (column, factor), cell in values})
     return rows
+
+
+def _mat_rows(name: str, columns: Sequence[Column]) -> list[dict[str, float]]:
+    vectors = {title.lower(): values for title, values in _mat_vectors(name).items()}
+    _factors(name, list(vectors), columns)
+    lengths = {title: len(values) for title, values in vectors.items()}
+    if len(set(lengths.values())) != 1 or not 1 <= max(lengths.values()) <= _MOST_ROWS:
+        said = ", ".join(f"{title} has {count}" for title, count in lengths.items())
+        raise refusal(f"vectors of one length, 1 to {_MOST_ROWS}", hint=f"{name}: {said}.")
+    rows = [dict(zip(vectors, row, strict=True)) for row in zip(*vectors.values(), strict=True)]
+    for number, row in enumerate(rows, 1):
+        for title, value in row.items():
+            _number(name, number, title, repr(value))
+    return rows
+
+
+def _mat_vectors(name: str) -> dict[str, list[float]]:
+    """Numeric vectors of a MAT file, by name; anything else in it is left out."""
+    import numpy as np
+    import scipy.io
+
+    allowed, path = "rows, or the name of a CSV file or of a MAT file of version 5", _folder.get() / name
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise refusal(f"a MAT file of at most {_LARGEST // 2**20} MB")
+        content = scipy.io.loadmat(path)
+    except NotImplementedError:
+        raise refusal(allowed, hint=f"{name} is of version 7.3: in MATLAB, save it with the option -v7.") from None
+    except PydanticCustomError:
+        raise
+    except (OSError, ValueError, TypeError, IndexError, scipy.io.matlab.MatReadError) as error:
+        raise refusal(allowed, hint=f"{name}: {getattr(error, 'strerror', None) or error}.") from None
+    found = {
+        title: np.asarray(values, float).ravel().tolist()
+        for title, values in content.items()
+        if not title.startswith("__") and isinstance(values, np.ndarray) and values.dtype.kind in "iuf"
+    }
+    if not found:
+        raise refusal(allowed, hint=f"{name} holds no vector of numbers.")
+    return found
 
 
 def _separator(head: str) -> str:

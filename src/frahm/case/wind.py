@@ -45,7 +45,7 @@ class Record(Door):
         """What is let in."""
         return (
             f"2 to {_MOST_SAMPLES} pairs [time in s, speed in m/s], times ascending and speeds >= 0, "
-            "or the name of a CSV file with the columns time and speed"
+            "or the name of a CSV or MAT file with the columns time and speed"
         )
 
     def read(self, value: Any) -> tuple[tuple[float, float], ...]:
@@ -106,7 +106,7 @@ class Wind(Section):
     record: Annotated[tuple[tuple[float, float], ...], Record()] = Field(
         default=(),
         title="Wind record",
-        description="Pairs of time and speed, or a CSV file with these columns, for the motion in unsteady wind.",
+        description="Pairs of time and speed, or a CSV or MAT file with these columns, for unsteady wind.",
     )
     turbulence: Turbulence | None = Field(
         default=None,

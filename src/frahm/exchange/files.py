@@ -50,6 +50,16 @@ def write_data(result: Any, path: str | Path) -> list[Path]:
 def read_data(path: str | Path) -> xr.Dataset:
     """Read what `write_data` wrote.
 
+    Parameters
+    ----------
+    path : str or Path
+        File that ends in .nc, .csv, .mat or .json.
+
+    Returns
+    -------
+    Dataset
+        Equal to the one that was written, units and long names included.
+
     Raises
     ------
     ParameterError

@@ -58,7 +58,22 @@ def read_time_series(path: str | Path, *, time: str | None = None) -> xr.Dataset
 def read_table(path: str | Path) -> xr.Dataset:
     """Table of another program, such as wind speeds with their probabilities: a variable for every column over "row".
 
-    Formats, units and errors are those of `read_time_series`.
+    Formats and units are those of `read_time_series`.
+
+    Parameters
+    ----------
+    path : str or Path
+        Text with columns, or a MAT file.
+
+    Returns
+    -------
+    Dataset
+        A variable for every column, in SI units where the file names a unit.
+
+    Raises
+    ------
+    ParameterError
+        If the file cannot be read; with its line if a cell is wrong.
     """
     return _dataset("row", _columns(Path(path)), {}, path)
 

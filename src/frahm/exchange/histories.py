@@ -30,5 +30,25 @@ def time_history_text(history: TimeHistory) -> str:
 
 
 def write_time_history(history: TimeHistory, path: str | Path) -> None:
-    """Write `time_history_text`; the file appears complete or not at all."""
+    """Write a time history as tab-delimited text for other programs; the file appears complete or not at all.
+
+    One line with names and units, then a line for every sample: time [s], displacement of the pipe and of the first
+    absorber relative to it [m] with its velocity [m/s], then displacement and velocity of every coordinate.
+
+    Parameters
+    ----------
+    history : TimeHistory
+        The motion.
+    path : str or Path
+        File to write.
+
+    Returns
+    -------
+    None
+
+    Raises
+    ------
+    ParameterError
+        If the file cannot be written.
+    """
     write_text(path, time_history_text(history))

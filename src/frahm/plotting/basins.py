@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-_COLOURS = (ORANGE, BLUE, GREEN, PURPLE, SKY, VERMILLION, "#F0E442", "#999999")
+_YELLOW = "#F0E442"
+_COLOURS = (ORANGE, BLUE, _YELLOW, GREEN, PURPLE, SKY, VERMILLION, "#999999")  # the first apart in grey, too
 _LOST = {
     -1: ("not settled", "#d0d0d0"), -2: ("escaped", INK), -3: ("too stiff to follow", "#8a8a8a"),
     -4: ("not computed", "#ffffff"),

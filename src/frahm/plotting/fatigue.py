@@ -8,10 +8,10 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.plotting.panels import name_panels, panels
+from frahm.plotting.plain import PlainFigure
 from frahm.plotting.style import BARE, PIPE, SINK, UNSTABLE_DASHES, decade_axis
 
 if TYPE_CHECKING:
-    import plotly.graph_objects as go
     import xarray as xr
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -48,47 +48,40 @@ def fatigue_figure(damage: xr.Dataset) -> Figure:
     return figure
 
 
-def fatigue_plot(damage: xr.Dataset) -> go.Figure:
+def fatigue_plot(damage: xr.Dataset) -> PlainFigure:
     """The same for the browser."""
-    from plotly.subplots import make_subplots
-
     from frahm.plotting.interactive import plot_layout
 
-    figure = make_subplots(rows=2, cols=1, shared_xaxes=True, vertical_spacing=0.08)
+    figure = PlainFigure((1.0, 1.0), gap=0.08, shared=True)
     edges = bin_edges(damage)
     dashes = {"damage_without": "dot", "damage_with_weighted": "dash", "damage_with": "solid"}
     for name, label, look in _lines(damage):
         line = {"color": look["color"], "dash": dashes[name], "shape": "hv"}
         values = per_speed(damage, name)
-        figure.add_scatter(x=edges, y=np.append(values, values[-1:]), mode="lines", line=line, name=label, row=1, col=1)
+        figure.add_scatter(x=edges, y=np.append(values, values[-1:]), mode="lines", line=line, name=label, row=1)
     ranges = damage["stress_range_without"].values / _MPA
     line = {"color": BARE, "dash": "dot", "shape": "hv"}
     figure.add_scatter(
-        x=edges, y=np.append(ranges, ranges[-1:]), mode="lines", line=line, showlegend=False, row=2, col=1,
+        x=edges, y=np.append(ranges, ranges[-1:]), mode="lines", line=line, showlegend=False, row=2,
         name="without absorbers",
     )  # fmt: skip
     if has_absorber(damage):
         kinds = damage["kind"].attrs["kinds"].split(", ")
         figure.add_scatter(
             x=damage["speed"].values, y=damage["stress_range_with"].values / _MPA, mode="lines+markers",
-            line={"color": PIPE, "width": 1}, showlegend=False, name="worst motion", row=2, col=1,
+            line={"color": PIPE, "width": 1}, showlegend=False, name="worst motion", row=2,
             text=[kinds[code] for code in damage["kind"].values],
             hovertemplate="%{x:.3f} m/s<br>%{y:.3g} MPa<br>%{text}",
         )  # fmt: skip
     decades = [float(np.log10(value)) for value in damage_range(damage)]
     figure.update_layout(**plot_layout(620))
     figure.update_layout(legend={"yanchor": "bottom", "y": 1.02})
-    figure.update_yaxes(
-        title_text="damage per wind speed [s/m]",
-        type="log",
-        range=decades,
-        exponentformat="power",
-        dtick=1,
-        row=1,
-        col=1,
-    )
-    figure.update_yaxes(title_text="hot-spot stress range [MPa]", rangemode="tozero", row=2, col=1)
-    figure.update_xaxes(title_text=SPEED_LABEL, row=2, col=1)
+    figure.update_axes(
+        "y", title={"text": "damage per wind speed [s/m]"}, type="log", range=decades, exponentformat="power",
+        dtick=1, row=1,
+    )  # fmt: skip
+    figure.update_axes("y", title={"text": "hot-spot stress range [MPa]"}, rangemode="tozero", row=2)
+    figure.update_axes("x", title={"text": SPEED_LABEL}, row=2)
     return figure
 
 

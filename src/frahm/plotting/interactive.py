@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from frahm.arrays import Floats
 from frahm.plotting.basins import BASIN_AXES, basin_entries, basin_indices
@@ -23,12 +21,14 @@ from frahm.plotting.lines import (
     interesting_range,
     largest_finite,
     line_colour,
+    line_width,
     lines_by_name,
     response_lines,
     special_marks,
     thinned,
 )
-from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK
+from frahm.plotting.plain import PlainFigure
+from frahm.plotting.style import BARE, GREEN, GRID, INK, PIPE, SINK
 from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
 
 if TYPE_CHECKING:
@@ -40,6 +40,17 @@ CONFIG = {
     "responsive": True,
     "modeBarButtonsToRemove": ["select2d", "lasso2d", "autoScale2d"],
 }
+_AXIS = {
+    "showline": True, "ticks": "outside", "showgrid": False, "zeroline": False, "automargin": True,
+    "linecolor": INK, "tickcolor": INK, "gridcolor": GRID, "title": {"standoff": 15},
+}  # fmt: skip
+# As much of a template as these figures need: plotly's own are long, and are copied into every figure.
+_TEMPLATE = {
+    "layout": {
+        "xaxis": _AXIS, "yaxis": _AXIS, "paper_bgcolor": "white", "plot_bgcolor": "white", "hovermode": "closest",
+        "autotypenumbers": "strict", "hoverlabel": {"align": "left"},
+    }
+}  # fmt: skip
 _SYMBOLS = {
     "saddle-node": "triangle-up",
     "hopf": "square",
@@ -59,12 +70,12 @@ def response_plot(
     bare: xr.Dataset | None = None,
     slow: xr.Dataset | None = None,
     modulated: xr.Dataset | None = None,
-) -> go.Figure:
+) -> PlainFigure:
     """Response over the detuning; see `frahm.plotting.static.response_figure`."""
-    figure = go.Figure()
+    figure = PlainFigure()
     tallest = 0.0 if modulated is None else _add_modulated(figure, modulated, quantity)
     for name, line in lines_by_name(response_lines(curve, quantity)).items():
-        _add_line(figure, line, line_colour(line), 2.0, name)
+        _add_line(figure, line, line_colour(line), 1.3 * line_width(line), name)
     if slow is not None:
         for i, line in enumerate(lines_by_name(response_lines(slow, quantity)).values()):
             _add_line(figure, line, INK, 0.8, "slow flow", legendgroup="slow flow", showlegend=i == 0)
@@ -75,8 +86,8 @@ def response_plot(
     top = max([tallest, largest_finite(curve[quantity].values), *_add_motions(figure, motions, quantity)])
     _add_special_points(figure, curve, quantity)
     figure.update_layout(**plot_layout(520))
-    figure.update_xaxes(title_text=DETUNING_LABEL)
-    figure.update_yaxes(title_text=QUANTITY_LABELS[quantity], title_standoff=8, range=[0, HEADROOM * top or 1.0])
+    figure.update_axes("x", title={"text": DETUNING_LABEL})
+    figure.update_axes("y", title={"text": QUANTITY_LABELS[quantity], "standoff": 8}, range=[0, HEADROOM * top or 1.0])
     if bare is not None and quantity == "pipe_peak":
         _name_what_leaves(figure, bare, HEADROOM * top)
     narrow = interesting_range(curve, modulated)
@@ -85,7 +96,7 @@ def response_plot(
     return figure
 
 
-def _name_what_leaves(figure: go.Figure, bare: xr.Dataset, top: float) -> None:
+def _name_what_leaves(figure: PlainFigure, bare: xr.Dataset, top: float) -> None:
     """Say how far the response without absorbers rises where it leaves the figure."""
     beyond = beyond_the_top(bare, top)
     if beyond is not None:
@@ -95,14 +106,14 @@ def _name_what_leaves(figure: go.Figure, bare: xr.Dataset, top: float) -> None:
         )  # fmt: skip
 
 
-def _add_line(figure: go.Figure, line: Line, colour: str, width: float, name: str, **more: Any) -> None:
+def _add_line(figure: PlainFigure, line: Line, colour: str, width: float, name: str, **more: Any) -> None:
     look = {"color": colour, "dash": "solid" if line.stable else "dash", "width": width}
     hover = "σ %{x:.4f} rad/s<br>%{y:.4g} m"
     x, y = single(line.x), single(line.y)
     figure.add_scatter(x=x, y=y, mode="lines", line=look, name=name, hovertemplate=hover, **more)
 
 
-def _add_modulated(figure: go.Figure, modulated: xr.Dataset, quantity: str) -> float:
+def _add_modulated(figure: PlainFigure, modulated: xr.Dataset, quantity: str) -> float:
     """Envelopes of modulated responses, the stable ones shaded; return the largest size drawn."""
     named, top = set(), 0.0
     for stretch in envelopes(modulated, quantity):
@@ -111,21 +122,22 @@ def _add_modulated(figure: go.Figure, modulated: xr.Dataset, quantity: str) -> f
         common: dict[str, Any] = {"x": single(stretch.x), "mode": "lines", "line": look, "legendgroup": name}
         common |= {"name": name, "hovertemplate": hover}
         figure.add_scatter(y=single(stretch.low), showlegend=False, **common)
-        fill = {"fill": "tonexty", "fillcolor": _MODULATED_FILL} if stretch.stable else {}
+        fill: dict[str, Any] = {"fill": "tonexty", "fillcolor": _MODULATED_FILL} if stretch.stable else {}
         figure.add_scatter(y=single(stretch.high), showlegend=stretch.stable not in named, **common, **fill)
         named.add(stretch.stable)
         top = max(top, float(np.max(stretch.high)) if stretch.stable else 0.0)
     return top
 
 
-def basin_map_plot(data: xr.Dataset) -> go.Figure:
+def basin_map_plot(data: xr.Dataset) -> PlainFigure:
     """Which attractor an initial state leads to; see `frahm.plotting.basins.basin_map_figure`."""
     across, up = (str(name) for name in data["label"].dims)
     entries, index = basin_entries(data), basin_indices(data)
     count = len(entries)
     scale = [[(i + side) / count, entry.colour] for i, entry in enumerate(entries) for side in (0, 1)]
-    figure = go.Figure()
-    figure.add_heatmap(
+    figure = PlainFigure()
+    figure.add_trace(
+        "heatmap",
         x=single(data[across].values), y=single(data[up].values), z=index.T.astype(np.int8),
         zmin=-0.5, zmax=count - 0.5, colorscale=scale, showscale=False,
         hovertemplate="%{x:.3g}, %{y:.3g}<extra></extra>",
@@ -136,39 +148,39 @@ def basin_map_plot(data: xr.Dataset) -> go.Figure:
     rest = {"symbol": "cross-thin", "size": 11, "line": {"color": INK, "width": 1.5}}
     figure.add_scatter(x=[0], y=[0], mode="markers", name="rest", marker=rest, hoverinfo="skip")
     figure.update_layout(**plot_layout(560))
-    figure.update_xaxes(title_text=BASIN_AXES[across])
-    figure.update_yaxes(title_text=BASIN_AXES[up])
+    figure.update_axes("x", title={"text": BASIN_AXES[across]})
+    figure.update_axes("y", title={"text": BASIN_AXES[up]})
     return figure
 
 
-def motion_plot(motion: MotionView) -> go.Figure:
+def motion_plot(motion: MotionView) -> PlainFigure:
     """Envelope of the whole run, last periods, spectrum of the tail."""
-    figure = make_subplots(rows=3, cols=1, vertical_spacing=0.13)
+    figure = PlainFigure((1.0, 1.0, 1.0), gap=0.13)
     for name in reversed(motion.signals):
         look: dict[str, Any] = {"color": _COLOURS[name], "width": 1}
         common: dict[str, Any] = {"legendgroup": name, "name": LABELS[name], "mode": "lines"}
         time, low, high = (single(values) for values in motion.envelope[name])
-        figure.add_scatter(x=time, y=low, line=look, showlegend=False, row=1, col=1, **common)
-        figure.add_scatter(x=time, y=high, line=look, fill="tonexty", fillcolor=_FILLS[name], row=1, col=1, **common)
+        figure.add_scatter(x=time, y=low, line=look, showlegend=False, row=1, **common)
+        figure.add_scatter(x=time, y=high, line=look, fill="tonexty", fillcolor=_FILLS[name], row=1, **common)
         for row, (x, y) in ((2, motion.last[name]), (3, thinned(*motion.spectrum[name]))):
             dashed = look | {"dash": "solid" if name == "x1" or row == 3 else "dash"}
-            figure.add_scatter(x=single(x), y=single(y), line=dashed, showlegend=False, row=row, col=1, **common)
+            figure.add_scatter(x=single(x), y=single(y), line=dashed, showlegend=False, row=row, **common)
     decades = [float(np.log10(value)) for value in motion.spectrum_range]
     figure.update_layout(**plot_layout(760))
-    figure.update_xaxes(title_text="time [s], whole run", row=1, col=1)
-    figure.update_xaxes(title_text="time [s], last periods", row=2, col=1)
-    figure.update_xaxes(title_text="frequency [Hz]", range=[0, SHOWN_HARMONICS * motion.frequency_hz], row=3, col=1)
-    figure.update_yaxes(title_text="envelope [m]", row=1, col=1)
-    figure.update_yaxes(title_text="displacement [m]", row=2, col=1)
-    figure.update_yaxes(
-        title_text="amplitude [m]", type="log", range=decades, exponentformat="power", dtick=1, row=3, col=1
+    figure.update_axes("x", title={"text": "time [s], whole run"}, row=1)
+    figure.update_axes("x", title={"text": "time [s], last periods"}, row=2)
+    figure.update_axes("x", title={"text": "frequency [Hz]"}, range=[0, SHOWN_HARMONICS * motion.frequency_hz], row=3)
+    figure.update_axes("y", title={"text": "envelope [m]"}, row=1)
+    figure.update_axes("y", title={"text": "displacement [m]"}, row=2)
+    figure.update_axes(
+        "y", title={"text": "amplitude [m]"}, type="log", range=decades, exponentformat="power", dtick=1, row=3
     )
     return figure
 
 
-def manifold_plot(manifold: xr.Dataset, motion: MotionView | None, folds: dict[str, Any] | None) -> go.Figure:
+def manifold_plot(manifold: xr.Dataset, motion: MotionView | None, folds: dict[str, Any] | None) -> PlainFigure:
     """Slow manifold with folds, jumps and the trajectory of a motion."""
-    figure = go.Figure()
+    figure = PlainFigure()
     if motion is not None and motion.slow is not None:
         Z, X = motion.slow
         figure.add_scatter(
@@ -185,12 +197,14 @@ def manifold_plot(manifold: xr.Dataset, motion: MotionView | None, folds: dict[s
     if folds:
         _add_folds(figure, folds)
     figure.update_layout(**plot_layout(460))
-    figure.update_xaxes(title_text="amplitude of the absorber |Z| [m]", rangemode="tozero")
-    figure.update_yaxes(title_text="amplitude of the pipe |X| [m]", range=[0, manifold_height(manifold, motion, folds)])
+    figure.update_axes("x", title={"text": "amplitude of the absorber |Z| [m]"}, rangemode="tozero")
+    figure.update_axes(
+        "y", title={"text": "amplitude of the pipe |X| [m]"}, range=[0, manifold_height(manifold, motion, folds)]
+    )
     return figure
 
 
-def _add_folds(figure: go.Figure, folds: dict[str, Any]) -> None:
+def _add_folds(figure: PlainFigure, folds: dict[str, Any]) -> None:
     mark = {"color": INK, "size": 10, "symbol": "triangle-up"}
     figure.add_scatter(x=folds["relative"], y=folds["pipe"], mode="markers", marker=mark, name="fold")
     for i, (start, end, height) in enumerate(zip(folds["relative"], folds["landing"], folds["pipe"], strict=True)):
@@ -201,7 +215,7 @@ def _add_folds(figure: go.Figure, folds: dict[str, Any]) -> None:
         )  # fmt: skip
 
 
-def _add_motions(figure: go.Figure, motions: list[MotionView], quantity: str) -> list[float]:
+def _add_motions(figure: PlainFigure, motions: list[MotionView], quantity: str) -> list[float]:
     """Mark the integrated motions, a modulated one with the range of its peaks; return the heights."""
     heights: list[float] = []
     for kind, symbol in (("periodic", "circle-open"), ("modulated", "diamond"), ("unsettled", "x")):
@@ -222,7 +236,7 @@ def _add_motions(figure: go.Figure, motions: list[MotionView], quantity: str) ->
     return heights
 
 
-def _add_special_points(figure: go.Figure, curve: xr.Dataset, quantity: str) -> None:
+def _add_special_points(figure: PlainFigure, curve: xr.Dataset, quantity: str) -> None:
     marks = special_marks(curve, quantity)
     mode = "markers+text" if len(marks) <= MOST_LABELS else "markers"
     for kind in dict.fromkeys(mark.kind for mark in marks):
@@ -238,10 +252,10 @@ def _add_special_points(figure: go.Figure, curve: xr.Dataset, quantity: str) -> 
 def plot_layout(height: int) -> dict[str, Any]:
     """What all figures for the browser have in common."""
     return {
-        "template": "simple_white",
+        "template": _TEMPLATE,
         "height": height,
         "margin": {"l": 60, "r": 16, "t": 36, "b": 50},
-        "legend": {"orientation": "h", "yanchor": "top", "y": -150 / height, "x": 0},
+        "legend": {"orientation": "h", "yanchor": "top", "y": -88 / height, "x": 0},
         "font": {"family": "system-ui, sans-serif", "size": 13, "color": INK},
         "hoverlabel": {"namelength": -1},
     }

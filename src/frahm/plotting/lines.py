@@ -14,7 +14,7 @@ from frahm.plotting.style import PAIR, PIPE, SINK
 if TYPE_CHECKING:
     import xarray as xr
 
-DETUNING_LABEL = "detuning σ = Ω - ω [rad/s]"
+DETUNING_LABEL = "detuning σ = Ω − ω [rad/s]"
 QUANTITY_LABELS = {"pipe_peak": "pipe displacement x₁ [m]", "relative_peak": "relative displacement z [m]"}
 SHORT_NAMES = {
     "saddle-node": "SN",
@@ -65,6 +65,11 @@ class Mark:
 def line_colour(line: Line) -> str:
     """Colour of a line by the kind of its branch."""
     return PAIR if line.asymmetric else SINK if line.detached else PIPE
+
+
+def line_width(line: Line) -> float:
+    """Width of a line [points]: detached branches are broad, so that they stand out without colour, too."""
+    return 2.4 if line.detached else 1.5
 
 
 def response_lines(curve: xr.Dataset, quantity: str, axis: str = "detuning") -> list[Line]:

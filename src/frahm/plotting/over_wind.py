@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-import plotly.graph_objects as go
+from typing import TYPE_CHECKING, Any
 
 from frahm.plotting.interactive import plot_layout, single
-from frahm.plotting.lines import largest_finite, line_colour, lines_by_name, response_lines
+from frahm.plotting.lines import largest_finite, line_colour, line_width, lines_by_name, response_lines
+from frahm.plotting.plain import PlainFigure
 from frahm.plotting.style import BARE, UNSTABLE_DASHES, new_figure
 
 if TYPE_CHECKING:
@@ -24,7 +23,7 @@ def over_wind_figure(curve: xr.Dataset, bare: xr.Dataset) -> Figure:
     axes = figure.subplots()
     for name, line in lines_by_name(response_lines(curve, "pipe_peak", "wind_speed")).items():
         style = "-" if line.stable else UNSTABLE_DASHES
-        axes.plot(line.x, line.y, linestyle=style, color=line_colour(line), linewidth=1.4, label=name)
+        axes.plot(line.x, line.y, linestyle=style, color=line_colour(line), linewidth=line_width(line), label=name)
     axes.plot(bare["wind_speed"].values, bare["pipe_peak"].values, ":", color=BARE, label="without absorbers")
     top = max(largest_finite(data["pipe_peak"].values) for data in (curve, bare))
     axes.set(xlabel=SPEED_LABEL, ylabel=_PEAK_LABEL, ylim=(0, 1.08 * top or 1.0))
@@ -33,18 +32,19 @@ def over_wind_figure(curve: xr.Dataset, bare: xr.Dataset) -> Figure:
     return figure
 
 
-def over_wind_plot(curve: xr.Dataset, bare: xr.Dataset) -> go.Figure:
+def over_wind_plot(curve: xr.Dataset, bare: xr.Dataset) -> PlainFigure:
     """The same for the browser."""
-    figure = go.Figure()
+    figure = PlainFigure()
     hover = "U %{x:.4f} m/s<br>%{y:.4g} m"
     for name, line in lines_by_name(response_lines(curve, "pipe_peak", "wind_speed")).items():
-        look = {"color": line_colour(line), "dash": "solid" if line.stable else "dash", "width": 2}
+        look: dict[str, Any] = {"color": line_colour(line), "dash": "solid" if line.stable else "dash"}
+        look["width"] = 1.3 * line_width(line)
         figure.add_scatter(x=single(line.x), y=single(line.y), mode="lines", line=look, name=name, hovertemplate=hover)
     figure.add_scatter(
         x=single(bare["wind_speed"].values), y=single(bare["pipe_peak"].values), mode="lines", name="without absorbers",
         line={"color": BARE, "dash": "dot", "width": 1.5}, hovertemplate=hover,
     )  # fmt: skip
     figure.update_layout(**plot_layout(430))
-    figure.update_xaxes(title_text=SPEED_LABEL)
-    figure.update_yaxes(title_text=_PEAK_LABEL, rangemode="tozero", title_standoff=8)
+    figure.update_axes("x", title={"text": SPEED_LABEL})
+    figure.update_axes("y", title={"text": _PEAK_LABEL}, rangemode="tozero", title_standoff=8)
     return figure

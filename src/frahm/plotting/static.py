@@ -18,6 +18,7 @@ from frahm.plotting.lines import (
     envelopes,
     largest_finite,
     line_colour,
+    line_width,
     lines_by_name,
     response_lines,
     special_marks,
@@ -105,13 +106,16 @@ def motion_figure(motion: MotionView) -> Figure:
         lines.set_yscale("log")
         decade_axis(lines.yaxis)
     lines.axvline(motion.frequency_hz, color=INK, linestyle=":", linewidth=0.8, label="excitation")
-    whole.set(title=motion.title, xlabel="time [s], whole run", ylabel="envelope [m]")
+    whole.set_title(motion.title, y=1.02)  # a place given need not be looked for
+    whole.set(xlabel="time [s], whole run", ylabel="envelope [m]")
     last.set(xlabel="time [s], last periods", ylabel="displacement [m]")
     lines.set(xlabel="frequency [Hz]", ylabel="amplitude [m]", ylim=motion.spectrum_range)
     lines.set_xlim(0, SHOWN_HARMONICS * motion.frequency_hz)
     for axes in (whole, last):
         axes.margins(x=0.01)
-    figure.align_ylabels()
+    for axes in (whole, last, lines):  # to find these places from the numbers beside them takes long
+        axes.xaxis.set_label_coords(0.5, -0.29)
+        axes.yaxis.set_label_coords(-0.1, 0.5)
     handles = [*whole.get_legend_handles_labels()[0], *lines.get_legend_handles_labels()[0]]
     figure.legend(handles=handles, loc="lower center", ncols=3)
     return figure
@@ -144,7 +148,7 @@ def manifold_figure(manifold: xr.Dataset, motion: MotionView | None = None, fold
 def _draw_branches(axes: Axes, curve: xr.Dataset, quantity: str) -> None:
     for name, line in lines_by_name(response_lines(curve, quantity)).items():
         dashes = "-" if line.stable else UNSTABLE_DASHES
-        axes.plot(line.x, line.y, linestyle=dashes, color=line_colour(line), label=name)
+        axes.plot(line.x, line.y, linestyle=dashes, color=line_colour(line), linewidth=line_width(line), label=name)
 
 
 def _draw_modulated(axes: Axes, modulated: xr.Dataset, quantity: str) -> float:

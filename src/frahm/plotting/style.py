@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 # Okabe and Ito's palette. Meaning never hangs on colour alone: line style or marker says it too.
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"
-INK, GREY = "#1a1a1a", "#6b6b6b"
+INK, GREY, GRID = "#1a1a1a", "#6b6b6b", "#e3e3e3"
 PIPE, SINK, BARE, PAIR = BLUE, VERMILLION, GREY, PURPLE
 UNSTABLE_DASHES = (0, (4.0, 2.0))
 
@@ -29,7 +29,7 @@ _RULES: dict[Any, Any] = {
     "axes.axisbelow": True,
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "grid.color": "#e3e3e3",
+    "grid.color": GRID,
     "grid.linewidth": 0.6,
     "legend.fontsize": 8.0,
     "legend.frameon": False,
@@ -62,21 +62,29 @@ def save_figure(figure: Figure, stem: str | Path) -> list[Path]:
     from frahm.files import written_beside
 
     paths = [Path(f"{stem}.svg"), Path(f"{stem}.png")]
+    arrange(figure)
     for path in paths:
         metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-        packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 3}} if path.suffix == ".png" else {}
+        packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}} if path.suffix == ".png" else {}
         with written_beside(path) as temporary:
             figure.savefig(temporary, dpi=160, metadata=metadata, **packed)
-        figure.set_layout_engine("none")  # the places found for the first file hold for the second
     return paths
 
 
+def arrange(figure: Figure) -> None:
+    """Find the places of everything once: they hold for all files, each of which would look for them twice."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine(None)
+
+
 def decade_axis(axis: Axis) -> None:
-    """Label the decades of a logarithmic axis in plain text: formulas take a hundred times as long to set."""
-    from matplotlib.ticker import FuncFormatter, NullFormatter
+    """Label the decades of a logarithmic axis in plain text, no ticks between them: both take long to set."""
+    from matplotlib.ticker import FuncFormatter, NullLocator
 
     axis.set_major_formatter(FuncFormatter(lambda value, _: decade_label(value)))
-    axis.set_minor_formatter(NullFormatter())
+    axis.set_minor_locator(NullLocator())
 
 
 def decade_label(value: float) -> str:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from frahm.arrays import Floats
 from frahm.plotting.interactive import plot_layout, single
+from frahm.plotting.plain import PlainFigure
 from frahm.plotting.style import BARE, INK, PIPE, SKY, new_figure
 
 if TYPE_CHECKING:
@@ -69,24 +68,24 @@ def gusts_figure(motion: xr.Dataset) -> Figure:
     return figure
 
 
-def gusts_plot(motion: xr.Dataset) -> go.Figure:
+def gusts_plot(motion: xr.Dataset) -> PlainFigure:
     """The same for the browser."""
-    figure = make_subplots(rows=2, cols=1, shared_xaxes=True, vertical_spacing=0.06, row_heights=[1, 2])
+    figure = PlainFigure((1.0, 2.0), gap=0.06, shared=True)
     time, speed = _thin(motion)
     look = {"color": SKY, "width": 1}
-    figure.add_scatter(x=time, y=speed, mode="lines", line=look, showlegend=False, row=1, col=1)
+    figure.add_scatter(x=time, y=speed, mode="lines", line=look, showlegend=False, row=1)
     for name, colour, label in _envelopes(motion):
         time, size = _envelope(motion, name)
-        figure.add_scatter(x=time, y=size, mode="lines", line={"color": colour, "width": 2}, name=label, row=2, col=1)
+        figure.add_scatter(x=time, y=size, mode="lines", line={"color": colour, "width": 2}, name=label, row=2)
     resonant = float(motion.attrs["resonant_amplitude"])
     if np.isfinite(resonant):
         dotted = {"color": BARE, "dash": "dot", "width": 1.5}
         ends = {"x": [float(time[0]), float(time[-1])], "y": [resonant] * 2}
-        figure.add_scatter(**ends, mode="lines", line=dotted, name=_STEADY_LABEL, row=2, col=1)
+        figure.add_scatter(**ends, mode="lines", line=dotted, name=_STEADY_LABEL, row=2)
     figure.update_layout(**plot_layout(520))
-    figure.update_xaxes(title_text="time [s]", row=2, col=1)
-    figure.update_yaxes(title_text="wind [m/s]", row=1, col=1)
-    figure.update_yaxes(title_text="envelope of the pipe [m]", rangemode="tozero", row=2, col=1)
+    figure.update_axes("x", title={"text": "time [s]"}, row=2)
+    figure.update_axes("y", title={"text": "wind [m/s]"}, row=1)
+    figure.update_axes("y", title={"text": "envelope of the pipe [m]"}, rangemode="tozero", row=2)
     return figure
 
 

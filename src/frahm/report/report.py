@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import base64
+import pkgutil
 import re
+import zlib
 from pathlib import Path
 from typing import Any
 
 import jinja2
-import plotly.graph_objects as go
-import plotly.offline
 from markupsafe import Markup
 
 from frahm.analysis import Analysis, margin_sentence
@@ -19,6 +19,7 @@ from frahm.plotting.fatigue import fatigue_plot
 from frahm.plotting.gallery import save_figures
 from frahm.plotting.interactive import CONFIG, basin_map_plot, manifold_plot, motion_plot, response_plot
 from frahm.plotting.over_wind import over_wind_plot
+from frahm.plotting.plain import PlainFigure
 from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
 from frahm.plotting.wind import gusts_plot
 from frahm.report import fatigue_tables, tables
@@ -67,6 +68,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["number"] = tables.number
+    environment.filters["with_indices"] = tables.with_indices
     views = motion_views(analysis.results, analysis.data)
     status, sentence = headline(analysis)
     plots = _plots(analysis, views)
@@ -84,7 +86,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         plots=plots,
         zoomed='"narrow":' in plots.get("response-pipe", ""),
         images={name: image_address(svg) for name, svg in images.items() if name in plots},
-        plotly_js=Markup(plotly.offline.get_plotlyjs()),
+        plotly_js=packed_plotly(),
         plotly_config=CONFIG,
     )
 
@@ -98,7 +100,7 @@ def margin_of(results: dict[str, Any]) -> str:
 def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
     """Interactive figures as JSON, by the same names as the figures on paper."""
     data, results = analysis.data, analysis.results
-    figures: dict[str, go.Figure] = {}
+    figures: dict[str, PlainFigure] = {}
     for name, quantity in (("response-pipe", "pipe_peak"), ("response-absorber", "relative_peak")):
         if "response" in data and quantity in data["response"]:
             beside = data.get("without_absorber"), data.get("slow_flow"), data.get("modulated")
@@ -120,9 +122,9 @@ def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
     return {name: Markup(_inside_script(figure)) for name, figure in figures.items()}
 
 
-def _inside_script(figure: go.Figure) -> str:
+def _inside_script(figure: PlainFigure) -> str:
     """JSON of a figure that cannot end the script element it stands in."""
-    return str(figure.to_json()).replace("<", "\\u003c")
+    return figure.to_json().replace("<", "\\u003c")
 
 
 def image_address(svg: str) -> str:
@@ -131,12 +133,21 @@ def image_address(svg: str) -> str:
     return "data:image/svg+xml;base64," + base64.b64encode(short.encode()).decode()
 
 
+def packed_plotly() -> str:
+    """plotly.js, deflated and in base64: what the browser inflates is two and a half times as long."""
+    script = pkgutil.get_data("plotly", "package_data/plotly.min.js")
+    if script is None:
+        raise RuntimeError("plotly is installed without its package_data/plotly.min.js")
+    return base64.b64encode(zlib.compress(script, 4)).decode()
+
+
 def headline(analysis: Analysis) -> tuple[str, str]:
     """Status and a sentence on how far the results can be trusted."""
     failed = sum(check.status == "fail" for check in analysis.checks)
     doubts = len(analysis.unverified) + sum(check.status == "unverified" for check in analysis.checks)
     if failed:
-        return "fail", f"✗ {failed} of {len(analysis.checks)} checks failed"
+        more = f", {doubts} unverified" if doubts else ""
+        return "fail", f"✗ {failed} of {len(analysis.checks)} checks failed{more}"
     if doubts:
         return "unverified", f"? {doubts} unverified"
     return "pass", f"✓ all checks passed ({len(analysis.checks)})"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from markupsafe import Markup, escape
 from pydantic import BaseModel
 
 from frahm.analysis import Analysis
@@ -16,9 +18,8 @@ _LISTED = 12  # pairs of a table that are still written out
 _MARKS = {"pass": "✓ pass", "fail": "✗ fail", "unverified": "? unverified"}
 
 
+_INDEXED, _SIGNS = re.compile(r"\b([A-Za-z])_([A-Za-z]\w*)\b"), re.compile("[<>]=")
 _GREEK = {"omega": "ω", "zeta": "ζ", "rho": "ρ", "sigma": "σ", "nu": "ν"}
-
-
 _SETTINGS = {
     "slow_flow_form": "Form of the slow flow",
     "harmonic_balance_residual": "Harmonic balance: residual below",
@@ -47,6 +48,15 @@ def number(value: Any, digits: int = 4) -> str:
     return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
 
 
+def with_indices(rows: list[tuple[str, ...]]) -> list[list[Markup]]:
+    """Cells in which letters such as K_s and v_crit have their index below, and <= is one sign."""
+    signs = {"<=": "\N{LESS-THAN OR EQUAL TO}", ">=": "\N{GREATER-THAN OR EQUAL TO}"}
+    return [
+        [Markup(_INDEXED.sub(r"\1<sub>\2</sub>", str(escape(_SIGNS.sub(lambda m: signs[m[0]], cell))))) for cell in row]
+        for row in rows
+    ]
+
+
 def input_rows(case: Case, defaulted: list[str]) -> list[InputRow]:
     """Every field of the case in SI units, those left out in the file marked."""
     return [
@@ -54,6 +64,12 @@ def input_rows(case: Case, defaulted: list[str]) -> list[InputRow]:
         for path, facts, value, _ in field_values(case)
         if path not in ("name", "title", "absorbers")
     ]
+
+
+def mode_count(case: Case) -> int:
+    """Number of modes of the pipe that take part."""
+    modal = getattr(case.pipe, "modal", None)
+    return 1 if modal is None else len(modal.frequencies)
 
 
 def derived_rows(case: Case) -> list[tuple[str, str, str]]:
@@ -201,19 +217,48 @@ def motion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
 
 def attractor_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     """Kind, peaks, envelope, basin fraction with its interval, and whether the motion from rest ends there."""
-    rows: list[tuple[str, ...]] = []
-    for found in analysis.results.get("attractors", []):
-        multiple = found["period_multiple"]
-        kind = f"{found['kind']}, {multiple} periods" if multiple > 1 else found["kind"]
-        low, high = found["basin_interval"]
-        rows.append(
-            (
-                kind, number(found["pipe_peak"]), number(found["pipe_envelope"][0]), number(found["relative_peak"]),
-                f"{100 * found['basin_fraction']:.3g} %", f"{100 * low:.3g} ... {100 * high:.3g} %",
-                "yes" if found["from_rest"] else "no",
-            )
-        )  # fmt: skip
-    return rows
+    return [
+        (
+            _kind(found), number(found["pipe_peak"]), number(found["pipe_envelope"][0]), number(found["relative_peak"]),
+            *_basin(found),
+        )
+        for found in analysis.results.get("attractors", [])
+    ]  # fmt: skip
+
+
+def coexisting_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Detuning, kind, peaks and basin of every attractor at frequencies of the window that have several."""
+    return [
+        (
+            number(found["detuning"]), _kind(found), number(found["pipe_peak"]), number(found["relative_peak"]),
+            *_basin(found),
+        )
+        for found in analysis.results.get("coexisting", [])
+    ]  # fmt: skip
+
+
+def _kind(found: dict[str, Any]) -> str:
+    multiple = found["period_multiple"]
+    return f"{found['kind']}, {multiple} periods" if multiple > 1 else str(found["kind"])
+
+
+def _basin(found: dict[str, Any]) -> tuple[str, str, str]:
+    low, high = found["basin_interval"]
+    return (
+        f"{100 * found['basin_fraction']:.3g} %",
+        f"{100 * low:.3g} … {100 * high:.3g} %",
+        "yes" if found["from_rest"] else "no",
+    )
+
+
+def basin_caption(analysis: Analysis) -> str:
+    """What the basin map shows, and where."""
+    at, design = analysis.results["basin_map"]["detuning"], vortex_shedding(analysis.case).detuning
+    place = "at the design wind" if math.isclose(at, design, rel_tol=1e-9) else "where the worst motion is"
+    return (
+        f"Motion reached from an initial displacement and velocity of the pipe {place}, at the detuning"
+        f" {number(at)} rad/s, the absorber at rest relative to it. The cross is rest."
+    )
 
 
 def modulated_sentence(analysis: Analysis) -> str:

@@ -122,6 +122,11 @@ def periodic_responses(
     -------
     list of PeriodicResponse
         Responses with the period of the excitation; both of a mirrored pair are listed.
+
+    Raises
+    ------
+    ParameterError
+        For bad input, or a system this cannot be asked of.
     """
     system = as_system(case_or_system)
     W = excitation_frequency(system, detuning=detuning, frequency=frequency)

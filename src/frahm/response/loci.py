@@ -65,6 +65,11 @@ def bifurcation_curve(
     xarray.Dataset
         Over "point": both axes, `frequency`, `pipe_peak` and `relative_peak` [m], `kind`, `curve` and
         `codimension2` (codes in its attributes).
+
+    Raises
+    ------
+    ParameterError
+        For bad input, or a system this cannot be asked of.
     """
     system = _nonlinear(case_or_system)
     check_choice("kind", kind, LOCUS_KINDS)
@@ -116,6 +121,11 @@ def detached_curve_events(
     -------
     list of DetachedCurveEvent
         Ascending in the parameter.
+
+    Raises
+    ------
+    ParameterError
+        For bad input, or a system this cannot be asked of.
     """
     system = _nonlinear(case_or_system)
     check_parameter(system, parameter)

@@ -51,6 +51,11 @@ def slow_flow_map(
     xarray.Dataset
         `pipe_amplitude` and `relative_amplitude` [m], NaN where there is no root, ascending in relative amplitude,
         and `stability`: -1 no root, 0 stable, 1 an odd, 2 an even number of unstable eigenvalues; axis "root" of 3.
+
+    Raises
+    ------
+    ParameterError
+        For bad input, or a system that is not one mode with one cubic sink.
     """
     import xarray as xr
 
@@ -148,6 +153,11 @@ def stability_boundaries(
     -------
     xarray.Dataset
         Over "point": one variable for each axis, `kind` (0 saddle-node, 1 hopf), `curve`, and the amplitudes [m].
+
+    Raises
+    ------
+    ParameterError
+        For bad input, or a system that is not one mode with one cubic sink.
     """
     import xarray as xr
 

@@ -57,6 +57,8 @@ class System:
         The coordinate reported as pipe displacement, or a row that combines coordinates into it.
     reference_frequency : float, optional
         The frequency [rad/s] detuning is counted from; by default the lowest non-zero natural frequency of (M, K).
+    name : str
+        What it is called in results and messages.
 
     Raises
     ------

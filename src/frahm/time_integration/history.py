@@ -202,6 +202,11 @@ def integrate(
     throw : bool
         Raise if the run fails, instead of returning what was computed with its `outcome`.
 
+    Returns
+    -------
+    TimeHistory
+        Time [s], displacements [m] and velocities [m/s] of every coordinate; how it ended is its `outcome`.
+
     Raises
     ------
     ParameterError

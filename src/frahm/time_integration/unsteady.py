@@ -182,6 +182,11 @@ def unsteady_response(
     throw : bool
         Raise if a run fails, instead of returning what was computed with its `outcome`.
 
+    Returns
+    -------
+    UnsteadyResponse
+        Motions with and without absorbers, in the unsteady wind and in steady wind of the same mean [m].
+
     Raises
     ------
     ParameterError

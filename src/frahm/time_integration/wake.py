@@ -173,6 +173,11 @@ def wake_response(
     throw : bool
         Raise if an integration fails, instead of keeping it as a value with its outcome.
 
+    Returns
+    -------
+    WakeResponse
+        Peaks [m] over the wind speed [m/s], rising and falling.
+
     Raises
     ------
     ParameterError

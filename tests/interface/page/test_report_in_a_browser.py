@@ -19,22 +19,29 @@ from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.wind import wind
 from frahm.report import write_report
 
+HIDDEN = """[...document.querySelectorAll('.scroll')].filter(
+    (box) => box.scrollWidth > box.clientWidth + 1 || box.scrollHeight > box.clientHeight + 1
+).map((box) => box.innerText)"""
 QUICK = (without_absorber, exact_response, slow_flow_response, wind, manifold, motions)
+
+
+def reported(case, chosen, folder):
+    """Write the report of some steps of an analysis, read back from disk."""
+    kept = steps.STEPS
+    steps.STEPS = tuple(step for step in kept if step.run in chosen)
+    try:
+        analysis = analyse(case)
+    finally:
+        steps.STEPS = kept
+    save_analysis(analysis, folder)
+    write_report(load_analysis(folder), folder)
+    return folder
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     """Results of the built-in pipe, of the steps that take no time."""
-    kept = steps.STEPS
-    steps.STEPS = tuple(step for step in kept if step.run in QUICK)
-    try:
-        analysis = analyse(frahm.load_case("jacket-pipe").with_analysis(periods=300))
-    finally:
-        steps.STEPS = kept
-    folder = tmp_path_factory.mktemp("report")
-    save_analysis(analysis, folder)
-    write_report(load_analysis(folder), folder)
-    return folder
+    return reported(frahm.load_case("jacket-pipe").with_analysis(periods=300), QUICK, tmp_path_factory.mktemp("report"))
 
 
 @pytest.fixture
@@ -42,7 +49,7 @@ def shown(browser, folder):
     """The report on a screen of the width asked for, without network; what it asked for and what went wrong."""
     contexts = []
 
-    def show(width):
+    def show(width, folder=folder):
         context = browser.new_context(viewport={"width": width, "height": 900}, offline=True)
         contexts.append(context)
         page, asked, faults = context.new_page(), [], []
@@ -67,15 +74,37 @@ def test_nothing_is_wider_than_the_screen(shown, width):
     page = shown(width)
     assert page.locator(".plot").count() >= 5
     assert page.evaluate("document.documentElement.scrollWidth") <= width
-    hidden = "(box) => box.scrollWidth > box.clientWidth + 1 || box.scrollHeight > box.clientHeight + 1"
-    cut = page.evaluate(f"[...document.querySelectorAll('.scroll')].filter({hidden}).map((box) => box.innerText)")
-    assert cut == []
+    assert page.evaluate(HIDDEN) == []
     clipped = page.evaluate(
         "[...document.querySelectorAll('math mi')].filter((letter) => {"
         "  const box = letter.closest('.scroll').getBoundingClientRect(), own = letter.getBoundingClientRect();"
         "  return own.bottom > box.bottom || own.top < box.top;}).length"
     )
     assert clipped == 0
+
+
+def test_an_elastic_pipe_is_shown_as_one(shown, tmp_path):
+    elastic = reported(frahm.load_case("jacket-pipe-elastic"), (without_absorber, wind), tmp_path)
+    for width in (1280, 390):
+        page = shown(width, elastic)
+        assert "moves in 3 modes" in page.locator("#inputs").inner_text()
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        assert page.evaluate(HIDDEN) == []
+
+
+def test_the_file_is_small(folder):
+    assert (folder / "report.html").stat().st_size < 5_000_000
+
+
+def test_a_browser_that_cannot_inflate_shows_the_drawings(browser, folder):
+    context = browser.new_context(offline=True)
+    context.add_init_script("delete globalThis.DecompressionStream")
+    page = context.new_page()
+    page.goto((folder / "report.html").as_uri())
+    page.wait_for_selector("body.no-script")
+    assert not page.locator(".plot").first.is_visible()
+    assert page.locator("img.paper").first.is_visible()
+    context.close()
 
 
 def test_no_button_sends_data_away(shown):

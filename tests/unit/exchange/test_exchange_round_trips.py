@@ -76,6 +76,33 @@ def test_histories_spectra_and_maps_come_back_equal(tmp_path, history, ending):
         same(frahm.read_data(file), dataset)
 
 
+@pytest.fixture(scope="module")
+def datasets(history):
+    """One of every kind of result."""
+    exact = frahm.frequency_response(CASE, detuning=(-0.02, 0.02), harmonics=3)
+    found = frahm.find_attractors(CASE, detuning=0.2, samples=3, periods=100)
+    elastic = frahm.load_case("jacket-pipe-elastic")
+    return {
+        "exact response": exact.to_dataset(),
+        "attractors": found.to_dataset(),
+        "basin map": frahm.basin_map(CASE, detuning=0.2, resolution=(4, 3)),
+        "stability boundaries": frahm.stability_boundaries(
+            CASE, plane=("detuning", "kappa"), bounds=((-0.1, 0.1), (50.0, 400.0))
+        ),
+        "modulated": frahm.modulated_branches(CASE, detuning=(-0.001, 0.002), looks=2, checks=0).to_dataset(),
+        "gusts": frahm.unsteady_response(
+            CASE.with_wind(turbulence={"intensity": 0.05, "length_scale": 50}), duration=60.0
+        ).to_dataset(),
+        "fatigue": frahm.fatigue_damage(elastic, bins=4, samples=1).to_dataset(),
+    }
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_every_kind_of_result_comes_back_equal(tmp_path, datasets, ending):
+    for name, dataset in datasets.items():
+        same(frahm.read_data(frahm.write_data(dataset, tmp_path / f"{name}{ending}")[0]), dataset)
+
+
 @pytest.mark.parametrize("ending", [".csv", ".mat", ".json"])
 def test_awkward_data_come_back_equal(tmp_path, ending):
     dataset = awkward()

@@ -47,8 +47,8 @@ def test_the_modulated_range_is_in_both_response_figures():
     assert "modulated (slow flow)" in [handle.get_label() for handle in axes.collections]
     assert axes.get_ylim()[1] > float(modulated["relative_max"].max())
     plot = response_plot(curve, "relative_peak", [], modulated=modulated)
-    shaded = [trace for trace in plot.data if trace.fill == "tonexty"]
-    np.testing.assert_allclose(max(np.max(t.y) for t in shaded), modulated["relative_max"].max(), rtol=1e-6)
+    shaded = [trace for trace in plot.data if trace.get("fill") == "tonexty"]
+    np.testing.assert_allclose(max(np.max(t["y"]) for t in shaded), modulated["relative_max"].max(), rtol=1e-6)
 
 
 def test_the_map_names_every_attractor_and_what_was_lost():
@@ -62,4 +62,4 @@ def test_the_map_names_every_attractor_and_what_was_lost():
     assert "escaped" in texts
     assert any(text.startswith("periodic, pipe 0.030") for text in texts)
     heat = basin_map_plot(data).data[0]
-    assert np.array_equal(heat.z, index.T)
+    assert np.array_equal(heat["z"], index.T)

@@ -1,0 +1,58 @@
+"""Every public name is described: what goes in, with units, what comes out, and what is refused."""
+
+import dataclasses
+import inspect
+import re
+
+import pytest
+
+import frahm
+
+NAMES = [name for name in frahm.__all__ if name != "__version__"]
+FUNCTIONS = [name for name in NAMES if not inspect.isclass(getattr(frahm, name))]
+CLASSES = [name for name in NAMES if inspect.isclass(getattr(frahm, name))]
+NO_UNITS = {
+    "load_case",
+    "read_data",
+    "read_table",
+    "write_data",
+    "beam_modes",
+}  # units are those of what they are given
+
+
+def section(text, title):
+    """Text of a section of a docstring, empty if there is none."""
+    found = re.search(rf"^{title}\n-+\n(.*?)(?=^\w[\w ]*\n-+\n|\Z)", text, re.DOTALL | re.MULTILINE)
+    return found[1] if found else ""
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_a_function_says_what_goes_in_what_comes_out_and_what_is_refused(name):
+    function = getattr(frahm, name)
+    text = inspect.getdoc(function)
+    described = section(text, "Parameters")
+    heads = [head for line in re.findall(r"^(\S.*?) : ", described, re.MULTILINE) for head in line.split(", ")]
+    named = inspect.signature(function).parameters.values()
+    asked = {parameter.name for parameter in named if parameter.kind is not parameter.VAR_KEYWORD}
+    assert {head.lstrip("*") for head in heads} >= asked
+    assert section(text, "Returns").strip()
+    assert "ParameterError" in section(text, "Raises")
+    assert name in NO_UNITS or re.search(r"\[(rad/s|m|1/s|s|-|m, m/s)\]|\[1/|\[kg|\[N|\[m/s|factor", text)
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_a_class_describes_its_fields_and_methods(name):
+    kind = getattr(frahm, name)
+    text = inspect.getdoc(kind)
+    assert text
+    if dataclasses.is_dataclass(kind):
+        fields = [field.name for field in dataclasses.fields(kind) if not field.name.startswith("_")]
+        assert [field for field in fields if not re.search(rf"\b{field}\b", text)] == []
+    own = [
+        (member, value)
+        for base in kind.__mro__ if base.__module__.startswith("frahm")
+        for member, value in vars(base).items() if not member.startswith("_")
+    ]  # fmt: skip
+    for member, value in own:
+        if inspect.isfunction(value) or isinstance(value, property | classmethod | staticmethod):
+            assert inspect.getdoc(getattr(kind, member)), member
