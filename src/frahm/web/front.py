@@ -5,6 +5,7 @@ The browser reads that library while Python still loads what makes the rest of t
 
 from __future__ import annotations
 
+import importlib.metadata
 import importlib.util
 import threading
 from collections.abc import Callable, Iterable, Iterator
@@ -16,7 +17,7 @@ from frahm.web.guard import WsgiApp
 DRAWING = "/drawing-library.js"
 HEAD = f"""<!DOCTYPE html>
 <html lang="en">
-<head><script async id="drawing-library" src="{DRAWING}"></script>
+<head><script async id="drawing-library" src="{DRAWING}?v={importlib.metadata.version("plotly")}"></script>
 """
 _CHUNK = 1 << 18
 
@@ -77,7 +78,7 @@ def _library(start_response: Callable[..., Any]) -> Iterator[bytes]:
     head = [
         ("Content-Type", "text/javascript; charset=utf-8"),
         ("Content-Length", str(path.stat().st_size)),
-        ("Cache-Control", "no-cache"),
+        ("Cache-Control", "max-age=31536000, immutable"),
     ]
     start_response("200 OK", head)
     return _chunks(path)

@@ -27,7 +27,9 @@ _SLIDES = 8  # a period: places of the sliding amplitude
 
 def exact_response(case: Case, progress: Progress) -> dict[str, Any]:
     """Exact response curve by harmonic balance over the window of the case."""
+    from frahm.harmonic_balance import is_linear
     from frahm.response import frequency_response
+    from frahm.systems import build_system
     from frahm.web.figures import curve_part
     from frahm.web.looks import EXACT_KINDS
 
@@ -40,6 +42,7 @@ def exact_response(case: Case, progress: Progress) -> dict[str, Any]:
         "largest_stable": None if np.isnan(stable) else [stable, at - case.pipe.frequency],
         "branches": len(curve.branches),
         "detached": sum(branch.detached for branch in curve.branches),
+        "linear": is_linear(build_system(case)),
         "unverified": list(curve.unverified),
     }
 

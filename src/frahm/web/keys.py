@@ -17,8 +17,8 @@ def _line(text: str, colour: str, width: float, style: str = "solid", look: str 
     return html.Li([sample, text], className=look)
 
 
-def _mark(text: str, sign: str, colour: str) -> html.Li:
-    return html.Li([html.Span(sign, className="sign", style={"color": colour}, **_SILENT), text])
+def _mark(text: str, sign: str, colour: str, look: str = "") -> html.Li:
+    return html.Li([html.Span(sign, className="sign", style={"color": colour}, **_SILENT), text], className=look)
 
 
 def _patch(text: str, colour: str) -> html.Li:
@@ -40,10 +40,10 @@ def response_key() -> html.Ul:
         _line("slow flow, unstable", INK, 1.5, "dashed", look="slow-only"),
         _line(BARE_LINE, BARE, 1.5, "dotted"),
         _line(TUNED_LINE, GREEN, 2, "dashed"),
-        _mark("at the detuning set", "○", SINK),
+        _mark("at the detuning set", "○", SINK, look="slow-only"),
         _mark("attractor found", "★", GREEN),
         _mark("SN saddle-node", "▲", INK),
-        _mark("H Hopf", "■", INK),
+        _mark("H Hopf", "■", INK, look="slow-only"),
         _mark("NS Neimark-Sacker", "◆", INK),
         _mark("PD period doubling", "▼", INK),
         _mark("BP branch point", "✚", INK),

@@ -78,7 +78,9 @@ def _kind_line(method: str, key: tuple[bool, bool, bool]) -> dict[str, Any]:
     kind, slow = KINDS[key], method == "slow"
     colour = INK if slow and not key[0] else kind.colour
     name = f"{'slow flow' if slow else 'exact'}, {kind.name}"
-    return _line(name, colour, "solid" if kind.stable else "dash", 1.3 if slow else 3.2)
+    look = _line(name, colour, "solid" if kind.stable else "dash", 1.3 if slow else 3.2)
+    look["line"]["simplify"] = slow  # what is drawn once need not leave out points to be quick
+    return look
 
 
 def _marks(name: str, marker: dict[str, Any], mode: str = "markers", hover: str = "") -> dict[str, Any]:
@@ -131,7 +133,7 @@ def _axis(title: str = "", **more: Any) -> dict[str, Any]:
 
 def _layout(height: int, **axes: dict[str, Any]) -> dict[str, Any]:
     return {
-        "height": height, "margin": {"l": 70, "r": 14, "t": 30, "b": 48}, "uirevision": "kept",
+        "height": height, "margin": {"l": 78, "r": 14, "t": 30, "b": 48}, "uirevision": "kept",
         "showlegend": False,  # the keys stand on the page
         "font": {"family": "system-ui, sans-serif", "size": 13, "color": INK}, "hoverlabel": {"namelength": -1},
         **axes,

@@ -52,7 +52,9 @@ def exact_status(found: dict[str, Any]) -> str:
         words.append(f"largest stable one {_metres(stable)} at σ = {at:.3g} rad/s")
     if found["detached"]:
         words.append(f"{found['detached']} detached")
-    text = "; ".join(words) + ". Modulated motions are not on this curve: find the attractors."
+    text = "; ".join(words) + "."
+    if not found["linear"]:
+        text += " Modulated motions are not on this curve: find the attractors."
     return text + _doubts(found["unverified"])
 
 

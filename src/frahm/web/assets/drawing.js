@@ -62,7 +62,8 @@
     const axis = (own, range) => Object.assign({}, own, range ? { range: range } : {});
     const shapes = [upright(live.detuning, { color: still.beside.color, width: 1 })];
     if (live.wind !== null) shapes.push(upright(live.wind, { color: still.beside.wind, width: 1, dash: "dot" }));
-    react("response", lines.map(trace), Object.assign({}, base, {
+    const rows = lines.some((line) => line.row) ? [] : [{ look: "bare", row: 1, x: [null], y: [null] }]; // keeps its axes
+    react("response", lines.concat(rows).map(trace), Object.assign({}, base, {
       shapes: shapes,
       xaxis: axis(base.xaxis, live.window), xaxis2: axis(base.xaxis2, live.window),
       yaxis: axis(base.yaxis, tops[0] && [0, tops[0]]), yaxis2: axis(base.yaxis2, tops[1] && [0, tops[1]]),
