@@ -191,6 +191,10 @@ def test_attractors_are_searched_and_marked(visit):
     expect(visitor.page.locator("#attractors tbody tr").first).to_contain_text(f"{found[0].pipe_peak:.4g}")
     stars = [trace for trace in visitor.lines() if trace["name"] == "attractor found"]
     assert stars[0]["y"] == [one.pipe_peak for one in found]
+    expect(visitor.page.locator("#attractors")).not_to_have_class("stale")
+    visitor.field("detuning").fill("0.01")  # elsewhere: the marks go, the table pales
+    expect(visitor.page.locator("#attractors")).to_have_class("stale")
+    assert wait_until(lambda: not [trace for trace in visitor.lines() if trace["name"] == "attractor found"])
 
 
 def endless(tmp_path):

@@ -1,5 +1,5 @@
 // Draws the figures: what stands still came with the page (window.frahmFigures), what moves comes as lines of numbers.
-// A drawing happens in a frame of the browser, one figure in each, so that every one of them is seen.
+// One figure is drawn in a frame of the browser, so that every drawing is seen.
 (function () {
   "use strict";
   const page = (window.frahmPage = window.frahmPage || {});
@@ -16,29 +16,42 @@
   const figure = (name) => document.getElementById(name + "-figure");
   const react = (name, data, layout) => window.Plotly.react(figure(name), data, layout, still.config);
 
-  // ---- one figure a frame, the newest of each
+  // ---- one figure a frame, the newest of each; the response first
   const waiting = new Map();
-  let frame = null;
+  let free = false; // whether the last drawing has been seen
 
   function soon(name, draw) {
     waiting.delete(name);
     waiting.set(name, draw);
-    if (frame === null) frame = request();
+    if (free) next();
   }
 
-  const request = () => (document.hidden ? setTimeout(next, 0) : requestAnimationFrame(next));
-
-  async function next() {
-    await library;
-    frame = null;
-    const order = waiting.has("response") ? "response" : waiting.keys().next().value;
-    const draw = waiting.get(order);
-    waiting.delete(order);
-    if (waiting.size) frame = request();
+  function next() {
+    free = waiting.size === 0;
+    if (free) return;
+    const name = waiting.has("response") ? "response" : waiting.keys().next().value;
+    const draw = waiting.get(name);
+    waiting.delete(name);
     const began = performance.now();
-    draw();
-    if (order !== "response") page.spent(performance.now() - began);
+    try {
+      draw();
+    } finally {
+      if (name !== "response") page.spent(performance.now() - began);
+      seen(next);
+    }
   }
+
+  const painted = new MessageChannel();
+  let after = null;
+  painted.port1.onmessage = () => { const then = after; after = null; then(); };
+
+  function seen(then) {
+    after = then;
+    const post = () => painted.port2.postMessage(0);
+    if (document.hidden) post(); else requestAnimationFrame(post);
+  }
+
+  library.then(next);
 
   // ---- response
   function trace(line) {

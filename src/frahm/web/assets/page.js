@@ -9,7 +9,7 @@
   const PAUSE = 150; // ms from one answer about manifold and map to the next question about them, at least
   const SHARE = 4; // times as long as they took to draw is left to the response
   const BEAT = 2000; // ms between signs of life
-  const state = { case: null, session: null, plane: "kappa", tuned: false, number: 0, key: null, slow: true };
+  const state = { case: null, session: null, plane: "kappa", tuned: false, number: 0, key: null, detuning: null, slow: true };
   const set = (id, props) => window.dash_clientside.set_props(id, props);
   const say = (id, text) => { const place = document.getElementById(id); if (place.textContent !== text) place.textContent = text; };
   const fade = (id, look) => { const place = document.getElementById(id); if (place && place.className !== look) set(id, { className: look }); };
@@ -61,11 +61,13 @@
       return;
     }
     const other = answer.key !== state.key;
-    state.key = answer.key;
+    const elsewhere = other || answer.detuning !== state.detuning;
+    const first = state.key === null;
+    Object.assign(state, { key: answer.key, detuning: answer.detuning });
     if (state.slow !== answer.slow) arrange(answer.slow);
     page.showResponse(answer, () => { window.frahmDrawn = number; });
-    if (other) {
-      say("exact-status", "The exact response follows when the sliders rest.");
+    if (other) say("exact-status", "The exact response follows when the sliders rest.");
+    if (elsewhere && !first) { // what was computed on demand belongs to other values
       fade("motion-holder", "stale");
       fade("attractors", "stale");
     }
