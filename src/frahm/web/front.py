@@ -5,8 +5,6 @@ The browser reads that library while Python still loads what makes the rest of t
 
 from __future__ import annotations
 
-import importlib.metadata
-import importlib.util
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -15,9 +13,11 @@ from typing import Any
 from frahm.web.guard import WsgiApp
 
 DRAWING = "/drawing-library.js"
+LIBRARY_VERSION = "4.1.1"
+LIBRARY = Path(__file__).parent / "library" / "plotly-cartesian.min.js"
 HEAD = f"""<!DOCTYPE html>
 <html lang="en">
-<head><script async id="drawing-library" src="{DRAWING}?v={importlib.metadata.version("plotly")}"></script>
+<head><script async id="drawing-library" src="{DRAWING}?v={LIBRARY_VERSION}"></script>
 """
 _CHUNK = 1 << 18
 
@@ -74,14 +74,13 @@ class Front:
 
 
 def _library(start_response: Callable[..., Any]) -> Iterator[bytes]:
-    path = Path(str(importlib.util.find_spec("plotly").origin)).parent / "package_data" / "plotly.min.js"  # type: ignore[union-attr]
     head = [
         ("Content-Type", "text/javascript; charset=utf-8"),
-        ("Content-Length", str(path.stat().st_size)),
+        ("Content-Length", str(LIBRARY.stat().st_size)),
         ("Cache-Control", "max-age=31536000, immutable"),
     ]
     start_response("200 OK", head)
-    return _chunks(path)
+    return _chunks(LIBRARY)
 
 
 def _chunks(path: Path) -> Iterator[bytes]:

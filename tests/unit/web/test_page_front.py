@@ -6,7 +6,7 @@ import pytest
 
 import frahm
 from frahm.web import app
-from frahm.web.front import DRAWING, HEAD, Front
+from frahm.web.front import DRAWING, HEAD, LIBRARY_VERSION, Front
 from frahm.web.server import page_server
 
 
@@ -43,7 +43,7 @@ def test_the_head_and_the_drawing_library_do_not_wait_for_the_rest(building):
     assert said[0][0] == "200 OK"
     said, library = ask(front, DRAWING)
     text = b"".join(library)
-    assert b"Plotly" in text or b"plotly" in text
+    assert f"plotly.js (cartesian - minified) v{LIBRARY_VERSION}".encode() in text[:200]
     assert dict(said[0][1])["Content-Length"] == str(len(text))
     go_on.set()
     assert b"".join(page) == b"the rest of /"
