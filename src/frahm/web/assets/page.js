@@ -7,7 +7,7 @@
   const REST = 250; // ms without a change after which the sliders count as released
   const GIVE_UP = 15000; // ms after which a question without an answer no longer holds up the next
   const PAUSE = 150; // ms from one answer about manifold and map to the next question about them, at least
-  const SHARE = 4; // times as long as they took to draw is left to the response
+  const SHARE = 6; // times as long as they took to draw is left to the response
   const BEAT = 2000; // ms between signs of life
   const state = { case: null, session: null, plane: "kappa", tuned: false, number: 0, key: null, detuning: null, slow: true };
   const set = (id, props) => window.dash_clientside.set_props(id, props);
@@ -107,7 +107,7 @@
   }
 
   function answeredExact(answer, number) {
-    if (!answer.key || answer.key !== state.key) return;
+    if (!answer.key || drawn.busy || answer.key !== state.key) return; // newer values come: they ask again
     if (answer.part) page.showExact(answer.part);
     say("exact-status", answer.status);
   }
