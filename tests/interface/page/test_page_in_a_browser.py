@@ -179,6 +179,14 @@ def test_a_click_on_the_curve_shows_the_motion_there(visit):
     assert wait_until(lambda: len(visitor.lines("motion")) >= 6)
     assert max(len(trace["x"]) for trace in visitor.lines("motion")) <= 2000
 
+    def on_the_manifold():
+        return [trace["y"] for trace in visitor.lines("manifold") if trace["name"] == "motion"]
+
+    assert wait_until(on_the_manifold)
+    assert on_the_manifold()[0][-1] == pytest.approx(curve.pipe_amplitude[index], rel=1e-3)
+    visitor.field("kappa").fill("300")  # the motion of other values leaves the manifold
+    assert wait_until(lambda: not on_the_manifold())
+
 
 def test_attractors_are_searched_and_marked(visit):
     visitor = visit().rest()

@@ -65,6 +65,7 @@
     const first = state.key === null;
     Object.assign(state, { key: answer.key, detuning: answer.detuning });
     if (state.slow !== answer.slow) arrange(answer.slow);
+    if (elsewhere) page.forgetMotion();
     page.showResponse(answer, () => { window.frahmDrawn = number; });
     if (other) say("exact-status", "The exact response follows when the sliders rest.");
     if (elsewhere && !first) { // what was computed on demand belongs to other values
