@@ -1,7 +1,7 @@
 """Units at the door: a plain number is SI, text is a number with its unit.
 
 Inside the package everything is SI, and frequencies are angular [rad/s]. One registry reads the text, with
-1 Hz = 2 pi rad/s; it is created when the first text with a unit is met.
+1 Hz = 2 pi rad/s; it takes half a second to create, and is created when a unit is met that is not among the commonest.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ _TERM = r"\(*(?:1|%|[^\W\d]+°?(?:(?:\^|\*\*)-?[1-9]|[²³⁴])?)\)*"
 # Only names, products, quotients and one-digit powers reach the parser of the registry: it would evaluate 9**9**9.
 _UNIT = re.compile(rf"{_TERM}(?:[*/· ]{_TERM})*")
 _LONGEST = 80
+_COMMON = {("mm", "m"): 1e-3, ("Hz", "rad/s"): 2 * math.pi}  # factors, to the last bit those of the registry
 
 _FAMILIAR = {
     "rad/s": ("Hz", "rad/s", "rpm", "rad/min", "deg/s", "cycle/s"),
@@ -84,6 +85,14 @@ def _split(value: Any, unit: str, name: str) -> tuple[float, str]:
 
 
 def _convert(number: float, unit_text: str, unit: str, name: str, value: str) -> float:
+    if unit and unit_text == unit:
+        return number
+    if (unit_text, unit) in _COMMON:
+        return number * _COMMON[unit_text, unit]
+    return _by_registry(number, unit_text, unit, name, value)
+
+
+def _by_registry(number: float, unit_text: str, unit: str, name: str, value: str) -> float:
     registry = _registry()
     try:
         if not _UNIT.fullmatch(unit_text):

@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from frahm import ParameterError
+from frahm import ParameterError, units
 from frahm.units import si_value
 
 
@@ -77,3 +77,13 @@ def test_the_unit_library_is_imported_only_for_text():
         " 'wind': {'speed': 1, 'lift_coefficient': 1}}); sys.exit('pint' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_commonest_units_are_read_without_the_unit_library_and_to_the_same_last_bit():
+    code = "import sys; from frahm.case import load_case; load_case('jacket-pipe'); sys.exit('pint' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+    pairs = [*units._COMMON, *((unit, unit) for unit in units._FAMILIAR if unit)]
+    for given, wanted in pairs:
+        for number in (0.78, 762.0, 13.4, 1 / 3, 2.7e-7):
+            quick = si_value(f"{number!r} {given}", wanted)
+            assert quick == units._by_registry(number, given, wanted, "value", ""), (given, wanted, number)

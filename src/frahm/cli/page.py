@@ -17,15 +17,15 @@ def page(
     browse: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
 ) -> None:
     """Serve the interactive page, to this machine only, until it is interrupted."""
+    from importlib.util import find_spec
+
     from frahm.case import load_case
     from frahm.errors import ParameterError
 
     loaded = load_case(case)
-    try:
-        import dash  # noqa: F401
-    except ModuleNotFoundError:
+    if find_spec("dash") is None:  # it takes half a second to load: the page is announced before
         hint = 'Install it: pip install "frahm[app]".'
-        raise ParameterError("app", "dash is not installed", "an installation with the page", hint=hint) from None
+        raise ParameterError("app", "dash is not installed", "an installation with the page", hint=hint)
     from frahm.web.server import page_server
 
     with page_server(loaded, port) as server:

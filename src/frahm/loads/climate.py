@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri
 
 from frahm.arrays import Floats, frozen
 from frahm.case import Case, Climate, Weibull
@@ -134,6 +133,8 @@ def wind_climate(case: Case) -> WindClimate:
 
 def persistence(climate: WindClimate, low: float, high: float, build_up: float) -> Persistence:
     """How long the wind stays between `low` and `high` [m/s], against the time a response needs to build up [s]."""
+    from scipy.special import ndtri  # takes long to load
+
     low = check_number("low", low, at_least=0, unit="m/s")
     high = check_number("high", high, above=low, unit="m/s")
     time = check_number("build_up", build_up, above=0, unit="s") if math.isfinite(build_up) else build_up

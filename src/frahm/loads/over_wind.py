@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from frahm.arrays import Floats, finite_array, frozen, labelled
 from frahm.case import Case
@@ -112,6 +111,8 @@ class WindExcitation:
 
     def speeds_of(self, frequency: float) -> Floats:
         """All wind speeds [m/s] that shed at Omega [rad/s], ascending; there may be none, and more than one."""
+        from scipy.optimize import brentq  # takes long to load
+
         low, high = self.speed_range
         if math.isinf(high):  # beyond the last knot Omega is proportional to U
             last = float(np.exp(self.strouhal.knots[-1])) * self.viscosity / self.diameter

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from frahm.case import Case, load_case
 from frahm.errors import ParameterError, check_choice, check_count
-from frahm.harmonic_balance import PeriodicResponse, periodic_responses_of
 from frahm.response.curve import ResponseCurve, SpecialPoint
-from frahm.response.exact import exact_curve
-from frahm.response.wind import wind_axis
 from frahm.slow_flow import SlowBranches, SlowFlow, pipe_scale, slow_branches, slow_flow_of
 from frahm.systems import System, as_system, detuning_of, excitation_frequency, excitation_window
+
+# What solves the exact equations is loaded when it is asked for: the slow flow does not wait for it.
+if TYPE_CHECKING:
+    from frahm.harmonic_balance import PeriodicResponse
 
 METHODS = ("harmonic-balance", "slow-flow")
 _RESOLUTION = 1e-11
@@ -72,6 +73,8 @@ def frequency_response(
     lo, hi = excitation_window(system, detuning=detuning, frequency=frequency)
     count = check_count("points", points, at_least=2, at_most=10_000_000)
     if method == "harmonic-balance":
+        from frahm.response.exact import exact_curve
+
         return exact_curve(system, lo, hi, highest_harmonic(harmonics))
     slow = slow_flow_of(system, form)
     if lo <= slow.limits[0]:
@@ -91,6 +94,9 @@ def _over_wind(
         raise ParameterError("wind", wind, "left out for a System, which knows no wind; give a case instead")
     if method != "harmonic-balance":
         raise ParameterError("method", method, '"harmonic-balance" where the response is wanted over the wind')
+    from frahm.response.exact import exact_curve
+    from frahm.response.wind import wind_axis
+
     axis = wind_axis(load_case(case_or_system), wind)
     curve = exact_curve(system, *axis.frequency, highest_harmonic(harmonics), axis.factor)
     points = tuple(
@@ -128,6 +134,8 @@ def periodic_responses(
     ParameterError
         For bad input, or a system this cannot be asked of.
     """
+    from frahm.harmonic_balance import periodic_responses_of
+
     system = as_system(case_or_system)
     W = excitation_frequency(system, detuning=detuning, frequency=frequency)
     return periodic_responses_of(system, W, highest_harmonic(harmonics))

@@ -60,6 +60,45 @@ def slow_flow_map(
     import xarray as xr
 
     system = as_system(case_or_system)
+    slow, given, shape = _on_map(system, detuning, kappa, xi2, form)
+    pipe, relative, stability = _values(system, slow, given, shape)
+    dims = (*_dims(given, shape), "root")
+    text = "-1 no root, 0 stable, 1 odd, 2 even number of unstable eigenvalues"
+    variables = {
+        "pipe_amplitude": labelled(dims, pipe, "pipe amplitude", "m"),
+        "relative_amplitude": labelled(dims, relative, "relative amplitude", "m"),
+        "stability": labelled(dims, stability, "stability class", "1", codes=text),
+    }
+    coordinates = {
+        name: labelled(name, values.reshape(-1), name, _UNITS[name]) for name, values in given.items() if name in dims
+    }
+    attributes = {"title": "slow-flow map", "system": system.name, "form": form, "frahm_version": __version__}
+    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+
+
+def slow_flow_values(
+    case_or_system: Case | System | str,
+    *,
+    detuning: ArrayLike = 0.0,
+    kappa: ArrayLike | None = None,
+    xi2: ArrayLike | None = None,
+    form: str = "averaged",
+) -> tuple[Floats, Floats, np.ndarray]:
+    """Values of `slow_flow_map` as plain arrays, for whoever draws them many times a second.
+
+    Returns
+    -------
+    tuple of ndarray
+        Pipe and relative amplitude [m], NaN where there is no root, and stability class; last axis of 3 roots.
+    """
+    system = as_system(case_or_system)
+    return _values(system, *_on_map(system, detuning, kappa, xi2, form))
+
+
+def _on_map(
+    system: System, detuning: ArrayLike, kappa: ArrayLike | None, xi2: ArrayLike | None, form: str
+) -> tuple[SlowFlow, dict[str, Floats], tuple[int, ...]]:
+    """The slow flow, the arrays of its parameters, and the shape they broadcast to."""
     slow = slow_flow_of(system, form)
     given = {
         "detuning": _axis(slow, "detuning", detuning),
@@ -71,6 +110,12 @@ def slow_flow_map(
     except ValueError:
         shapes = {name: values.shape for name, values in given.items()}
         raise ParameterError("detuning, kappa, xi2", shapes, "arrays that broadcast against each other") from None
+    return slow, given, shape
+
+
+def _values(
+    system: System, slow: SlowFlow, given: dict[str, Floats], shape: tuple[int, ...]
+) -> tuple[Floats, Floats, np.ndarray]:
     points = int(np.prod(shape, dtype=int))
     pipe, relative = np.empty((points, 3)), np.empty((points, 3))
     stability = np.empty((points, 3), dtype=np.int8)
@@ -80,18 +125,7 @@ def slow_flow_map(
     scale = pipe_scale(system)
     if scale != 1:
         pipe *= scale
-    dims = (*_dims(given, shape), "root")
-    text = "-1 no root, 0 stable, 1 odd, 2 even number of unstable eigenvalues"
-    variables = {
-        "pipe_amplitude": labelled(dims, pipe.reshape(*shape, 3), "pipe amplitude", "m"),
-        "relative_amplitude": labelled(dims, relative.reshape(*shape, 3), "relative amplitude", "m"),
-        "stability": labelled(dims, stability.reshape(*shape, 3), "stability class", "1", codes=text),
-    }
-    coordinates = {
-        name: labelled(name, values.reshape(-1), name, _UNITS[name]) for name, values in given.items() if name in dims
-    }
-    attributes = {"title": "slow-flow map", "system": system.name, "form": form, "frahm_version": __version__}
-    return xr.Dataset(variables, coords=coordinates, attrs=attributes)
+    return pipe.reshape(*shape, 3), relative.reshape(*shape, 3), stability.reshape(*shape, 3)
 
 
 def _axis(slow: SlowFlow, name: str, values: ArrayLike) -> Floats:

@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from frahm.arrays import Floats
 from frahm.case import Case
@@ -67,6 +66,8 @@ def wind_axis(case: Case, window: Any) -> WindAxis:
 
 def _factor(law: WindExcitation, lift: float, lo: float, hi: float) -> Floats:
     """Pieces of F_L(Omega)/lift, one cubic between neighbouring knots; smooth between the kinks of the tables."""
+    from scipy.interpolate import CubicHermiteSpline  # takes long to load
+
     if lift == 0:
         return np.zeros((0, 5))
     edges = np.concatenate([[lo], law.kinks(lo, hi), [hi]])

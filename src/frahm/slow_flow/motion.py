@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.integrate import solve_ivp
 
 from frahm.arrays import Complexes, Floats, frozen
 from frahm.compiled import kernel
@@ -99,6 +98,8 @@ def integrate_slow_flow(
 
     Relative error 1e-9 a step (DOP853). `frequency` is Omega [rad/s].
     """
+    from scipy.integrate import solve_ivp  # takes long to load
+
     W = check_number("frequency", frequency, above=0, unit="rad/s")
     periods = check_number("periods", periods, above=0, at_most=1e6)
     samples = check_count("samples_per_period", samples_per_period, at_most=4096)

@@ -9,10 +9,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.linalg
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from frahm.arrays import Floats, finite_array, frozen, labelled
 from frahm.errors import ParameterError, check_count
@@ -172,6 +170,8 @@ class BeamModes:
 
     def _zeros(self, series: Floats) -> list[float]:
         """Simple zeros of a Legendre series between -1 and 1, ascending."""
+        from scipy.optimize import brentq  # takes long to load
+
         grid = -np.cos(np.linspace(0, math.pi, 4 * series.size + 1))
         values = legendre.legval(grid, series)
         known = np.abs(values) > 1e-11 * np.max(np.abs(values))  # a support is zero, but for rounding
@@ -218,6 +218,8 @@ def beam_modes(beam: Beam, count: int = 6) -> BeamModes:
 
 def _solved(beam: Beam, degree: int, count: int) -> tuple[Floats, Floats]:
     """(omega^2 m l^4/(E I)) of the lowest modes (n,), and their series (segments, degree + 1, n)."""
+    import scipy.linalg  # takes long to load
+
     K, M, rows = matrices(beam, degree)
     # 1/omega^2 as the eigenvalue: then it is the low modes whose error is of the order of rounding.
     inverse, vectors = scipy.linalg.eigh(M, K, subset_by_index=(len(K) - count, len(K) - 1))

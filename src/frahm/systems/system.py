@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import ArrayLike
 
 from frahm.absorbers import Law
@@ -115,6 +114,8 @@ class System:
     @functools.cached_property
     def natural_frequencies(self) -> Floats:
         """Natural frequencies of (M, K) [rad/s], elements excluded, ascending, rigid-body ones as 0."""
+        import scipy.linalg  # takes long to load
+
         symmetric = np.array_equal(self.stiffness, self.stiffness.T)
         values = scipy.linalg.eigvalsh(self.stiffness, self.mass) if symmetric else None
         if values is None:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from frahm.case import Case, field_table
+from frahm.case import Case, CubicLaw, Pipe, PolynomialLaw, Tube, field_table
 from frahm.errors import ParameterError, check_number
 from frahm.units import si_value
 
@@ -70,11 +70,6 @@ class Control:
     changed: Callable[[Case, float | str], Case]
     span: Callable[[Case], Span]
 
-    @property
-    def key(self) -> str:
-        """Name without dots, for identifiers in HTML."""
-        return self.name.replace(".", "-")
-
 
 def shown(value: float) -> str:
     """Number as a field shows it."""
@@ -89,28 +84,94 @@ def read_number(text: str, unit: str, name: str) -> float:
         return si_value(text, unit, name=name)
 
 
+def with_law(case: Case, name: str, value: Any) -> Case:
+    """Case whose first absorber has another value in a field of its force law."""
+    first, *others = case.to_dict()["absorbers"]
+    changed = first | {"law": first["law"] | {name: value}}
+    return Case(**case.to_dict() | {"absorbers": [changed, *others]})
+
+
 def with_sink(case: Case, name: str, value: float) -> Case:
-    """Case whose sink has another kappa, xi2 or rho2."""
+    """Case whose first absorber has another kappa, xi2 or rho2."""
     change: dict[str, Any] = {name: value}
     return case.with_absorber(**change)
 
 
-def _absorber_control(name: str, title: str, symbol: str, unit: str, span: Span, above_zero: bool) -> Control:
+def _normalised(name: str, title: str, symbol: str, unit: str, span: Span, above_zero: bool) -> Control:
+    """Control of a value of the first absorber over the mass of the pipe."""
+
+    def value(case: Case) -> float:
+        return case.absorbers[0].normalised(case.pipe.mass)[name]
+
     def changed(case: Case, given: float | str) -> Case:
         bounds: dict[str, float] = {"above": 0} if above_zero else {"at_least": 0}
         number = check_number(name, read_number(str(given), unit, name), unit=unit or "-", **bounds)
         return with_sink(case, name, number)
 
+    return Control(name, title, symbol, unit, value, changed, lambda case: span.holding(value(case)))
+
+
+def _law_control(kind: str, field: str) -> Control:
+    """Control of a field of the force law of the first absorber."""
+    facts = field_table(Case)[f"absorbers[].law({kind}).{field}"]
+    name = f"law.{field}"
+
+    def value(case: Case) -> float:
+        return float(getattr(case.absorbers[0].law, field))
+
+    def changed(case: Case, given: float | str) -> Case:
+        return with_law(case, field, read_number(str(given), facts.unit, name))
+
+    return Control(name, facts.title, facts.symbol, facts.unit, value, changed, lambda case: _around(value(case)))
+
+
+def _coefficient_control(power: int) -> Control:
+    """Control of a coefficient of a polynomial spring."""
+    name, unit = f"law.c{power}", "N/m" if power == 1 else f"N/m^{power}"
+    kind = {1: "Linear", 2: "Quadratic", 3: "Cubic"}.get(power, f"Coefficient of the power {power}:")
+
+    def value(case: Case) -> float:
+        return float(case.absorbers[0].law.coefficients[power - 1])  # type: ignore[union-attr]
+
+    def changed(case: Case, given: float | str) -> Case:
+        coefficients = list(case.absorbers[0].law.coefficients)  # type: ignore[union-attr]
+        coefficients[power - 1] = read_number(str(given), unit, name)
+        return with_law(case, "coefficients", coefficients)
+
     return Control(
-        name, title, symbol, unit, lambda case: case.absorbers[0].normalised(case.pipe.mass)[name], changed,
-        lambda case: span.holding(case.absorbers[0].normalised(case.pipe.mass)[name]),
+        name, f"{kind} stiffness", f"c{'₀₁₂₃₄₅₆₇₈₉'[power % 10] if power < 10 else power}", unit, value, changed,
+        lambda case: _around(value(case)),
     )  # fmt: skip
+
+
+def _around(value: float) -> Span:
+    """A decade to both sides of a positive value; for others as far again beyond zero."""
+    if value > 0:
+        return Span(value / 10, 10 * value, True)
+    return Span(2 * value, -2 * value, False) if value < 0 else Span(-1.0, 1.0, False)
+
+
+def _position_control() -> Control:
+    """Control of the place of the first absorber on an elastic pipe."""
+    facts = field_table(Case)["absorbers[].position"]
+
+    def value(case: Case) -> float:
+        where = case.absorbers[0].position
+        return float(case.pipe.modal.largest or 0.0) if where is None else where
+
+    def changed(case: Case, given: float | str) -> Case:
+        return case.with_absorber(position=read_number(str(given), "m", "position"))
+
+    return Control(
+        "position", facts.title, facts.symbol, "m", value, changed, lambda case: Span(0.0, case.pipe.length, False)
+    )
 
 
 def _field_control(path: str, span: Callable[[float], Span]) -> Control:
     """Control of a field of the case; title, symbol, unit and bounds come from its metadata."""
     facts = field_table(Case)[path]
     section, field = path.split(".")
+    section = section.removesuffix("(tube)")
 
     def value(case: Case) -> float:
         return float(getattr(getattr(case, section), field))
@@ -126,17 +187,53 @@ def _field_control(path: str, span: Callable[[float], Span]) -> Control:
     def ends(case: Case) -> Span:
         return span(value(case)).holding(value(case))
 
-    return Control(path, facts.title, facts.symbol, facts.unit, value, changed, ends)
+    return Control(f"{section}.{field}", facts.title, facts.symbol, facts.unit, value, changed, ends)
 
 
-CONTROLS = (
-    _absorber_control("kappa", "Cubic stiffness of the sink", "κ", "1/(m^2 s^2)", Span(1.0, 1e4, True), True),
-    _absorber_control("xi2", "Damping of the sink", "ξ₂", "1/s", Span(5e-4, 0.2, True), False),
-    _absorber_control("rho2", "Mass ratio of the sink", "ρ₂", "", Span(2e-3, 0.1, True), True),
-    _field_control("wind.speed", lambda speed: Span(0.5 * speed, 2 * speed, False)),
-    _field_control("pipe.frequency", lambda omega: Span(0.7 * omega, 1.3 * omega, False)),
-    _field_control("pipe.damping_ratio", lambda zeta: Span(0.0, max(0.02, 2 * zeta), False)),
+_KAPPA = _normalised("kappa", "Cubic stiffness of the sink", "κ", "1/(m^2 s^2)", Span(1.0, 1e4, True), True)
+_XI2, _RHO2 = (
+    {word: _normalised(name, f"{title} of the {word}", symbol, unit, span, above_zero) for word in ("sink", "absorber")}
+    for name, title, symbol, unit, span, above_zero in (
+        ("xi2", "Damping", "ξ₂", "1/s", Span(5e-4, 0.2, True), False),
+        ("rho2", "Mass ratio", "ρ₂", "", Span(2e-3, 0.1, True), True),
+    )
 )
+_WIND = _field_control("wind.speed", lambda speed: Span(0.5 * speed, 2 * speed, False))
+_FREQUENCY = _field_control("pipe.frequency", lambda omega: Span(0.7 * omega, 1.3 * omega, False))
+_RATIO, _TUBE_RATIO = (
+    _field_control(f"{pipe}.damping_ratio", lambda zeta: Span(0.0, max(0.02, 2 * zeta), False))
+    for pipe in ("pipe", "pipe(tube)")
+)
+_WALL = _field_control("pipe(tube).wall", lambda wall: Span(0.5 * wall, 1.5 * wall, False))
+
+
+def controls_of(case: Case) -> tuple[Control, ...]:
+    """The parameters of a case that can be changed on the page: of its first absorber, the wind and the pipe."""
+    return (*_absorber_controls(case), _WIND, *_pipe_controls(case))
+
+
+def _absorber_controls(case: Case) -> tuple[Control, ...]:
+    law = case.absorbers[0].law
+    place = (_position_control(),) if isinstance(case.pipe, Tube) else ()
+    if isinstance(law, CubicLaw):
+        return (_KAPPA, _XI2["sink"], _RHO2["sink"], *place)
+    spring: list[Control]
+    if isinstance(law, PolynomialLaw):
+        spring = [_coefficient_control(power) for power, c in enumerate(law.coefficients, 1) if c]
+    else:
+        names = [name for name in type(law).model_fields if name not in ("kind", "damping")]
+        spring = [_law_control(law.kind, name) for name in names]
+    return (*spring, _XI2["absorber"], _RHO2["absorber"], *place)
+
+
+def _pipe_controls(case: Case) -> tuple[Control, ...]:
+    if isinstance(case.pipe, Pipe):
+        return _FREQUENCY, _RATIO
+    if isinstance(case.pipe, Tube):
+        return (_WALL,) if case.pipe.damping_ratios else (_WALL, _TUBE_RATIO)
+    return ()  # the modes of a table belong together
+
+
 DETUNING = "detuning"
 
 
@@ -162,7 +259,7 @@ class Reading:
 def reading(base: Case, texts: Mapping[str, Any]) -> Reading:
     """Apply the texts of the fields to a case; a field that still shows the value of the case leaves it untouched."""
     case, problems = base, {}
-    for control in CONTROLS:
+    for control in controls_of(base):
         text = str(texts.get(control.name, "")).strip()
         if text == shown(control.value(base)):
             continue
@@ -183,3 +280,42 @@ def reading(base: Case, texts: Mapping[str, Any]) -> Reading:
 def detuning_span(case: Case) -> Span:
     """Range of the detuning: the window of the analysis."""
     return Span(*case.analysis.detuning, False)
+
+
+def field_texts(case: Case, detuning: float) -> dict[str, str]:
+    """Texts of all fields."""
+    return {control.name: shown(control.value(case)) for control in controls_of(case)} | {DETUNING: shown(detuning)}
+
+
+def spans(case: Case) -> dict[str, Span]:
+    """Ranges of all sliders."""
+    return {control.name: control.span(case) for control in controls_of(case)} | {DETUNING: detuning_span(case)}
+
+
+_HINTS = {
+    "wind.speed": "sets the lift; the dotted line is where it sheds vortices",
+    "pipe.frequency": "or text with a unit, such as 0.78 Hz",
+    DETUNING: "where the motion is looked at",
+}
+_GREEK = {"omega": "ω", "zeta": "ζ"}
+
+
+def field_facts(case: Case, detuning: float) -> list[dict[str, Any]]:
+    """What the script of the page must know to build the fields and sliders, and to turn positions into numbers."""
+    texts, ranges = field_texts(case, detuning), spans(case)
+    head = {control.name: (control.title, control.symbol, control.unit) for control in controls_of(case)}
+    head[DETUNING] = ("Detuning", "σ", "rad/s")
+    return [
+        {
+            "name": name, "key": html_key(name), "title": title, "symbol": _GREEK.get(symbol, symbol),
+            "unit": unit.replace("^2", "²").replace("^3", "³") or "-", "hint": _HINTS.get(name, ""),
+            "text": texts[name], "low": ranges[name].low, "high": ranges[name].high,
+            "logarithmic": ranges[name].logarithmic, "steps": STEPS,
+        }
+        for name, (title, symbol, unit) in head.items()
+    ]  # fmt: skip
+
+
+def html_key(name: str) -> str:
+    """Name of a control without dots, for identifiers in HTML."""
+    return name.replace(".", "-")

@@ -2,50 +2,18 @@
 
 from __future__ import annotations
 
-import base64
+import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from frahm.arrays import Floats
 from frahm.plotting.lines import SHORT_NAMES, largest_finite, stretches
-from frahm.plotting.style import PAIR, PIPE, SINK
 from frahm.response import ResponseCurve, SpecialPoint
+from frahm.web.looks import EXACT_KINDS, QUANTITIES
 
 MOST_POINTS = 1000
-QUANTITIES = ("pipe_peak", "relative_peak")
-
-
-@dataclass(frozen=True)
-class Kind:
-    """Lines of one look.
-
-    Attributes
-    ----------
-    name : str
-        What the legend says.
-    colour : str
-    stable : bool
-        Drawn solid; dashed otherwise.
-    """
-
-    name: str
-    colour: str
-    stable: bool
-
-
-KINDS = {
-    (False, False, True): Kind("stable", PIPE, True),
-    (False, False, False): Kind("unstable", PIPE, False),
-    (True, False, True): Kind("detached, stable", SINK, True),
-    (True, False, False): Kind("detached, unstable", SINK, False),
-    (False, True, True): Kind("asymmetric, stable", PAIR, True),
-    (False, True, False): Kind("asymmetric, unstable", PAIR, False),
-}
-SLOW_KINDS = tuple(key for key in KINDS if not key[1])  # one harmonic has no asymmetric response
-EXACT_KINDS = tuple(KINDS)
 
 
 def curve_lines(
@@ -101,7 +69,6 @@ def heights(curve: ResponseCurve) -> dict[str, float]:
     return {name: largest_finite(getattr(curve, name)) for name in QUANTITIES}
 
 
-def typed(values: Any) -> dict[str, str]:
-    """Doubles as Plotly.js reads them, without a digit lost."""
-    array = np.ascontiguousarray(values, dtype="<f8")
-    return {"dtype": "f8", "bdata": base64.b64encode(array.tobytes()).decode("ascii")}
+def numbers(values: Any) -> list[float | None]:
+    """Doubles as JSON carries them, without a digit lost; None in the gaps."""
+    return [value if math.isfinite(value) else None for value in np.asarray(values, dtype=float).tolist()]

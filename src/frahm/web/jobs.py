@@ -27,22 +27,33 @@ _SLIDES = 8  # a period: places of the sliding amplitude
 
 def exact_response(case: Case, progress: Progress) -> dict[str, Any]:
     """Exact response curve by harmonic balance over the window of the case."""
+    from frahm.harmonic_balance import is_linear
     from frahm.response import frequency_response
-    from frahm.web.drawing import curve_lines, heights, special_points
+    from frahm.systems import build_system
+    from frahm.web.figures import curve_part
+    from frahm.web.looks import EXACT_KINDS
 
     harmonics = case.analysis.harmonics
     curve = frequency_response(case, detuning=case.analysis.detuning, harmonics=harmonics)
     stable, at = curve.largest(stable_only=True)
     return {
-        "lines": [{name: values.tolist() for name, values in line.items()} for line in curve_lines(curve)],
-        "special": special_points(curve.special_points),
-        "heights": heights(curve),
+        "part": curve_part("exact", EXACT_KINDS, curve),
         "largest": curve.largest()[0],
         "largest_stable": None if np.isnan(stable) else [stable, at - case.pipe.frequency],
         "branches": len(curve.branches),
         "detached": sum(branch.detached for branch in curve.branches),
+        "linear": is_linear(build_system(case)),
         "unverified": list(curve.unverified),
     }
+
+
+def exact_table(case: Case, progress: Progress) -> dict[str, Any]:
+    """The exact response curve as CSV text."""
+    from frahm.exchange import csv_text
+    from frahm.response import frequency_response
+
+    curve = frequency_response(case, detuning=case.analysis.detuning, harmonics=case.analysis.harmonics)
+    return {"csv": csv_text(curve.to_dataset())}
 
 
 def motion(
@@ -196,6 +207,7 @@ def warm_up(case: Case, progress: Progress) -> dict[str, Any]:
 
 JOBS: dict[str, Callable[..., dict[str, Any]]] = {
     "exact response": exact_response,
+    "exact table": exact_table,
     "motion": motion,
     "attractors": attractors,
     "report": report,

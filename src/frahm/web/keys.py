@@ -7,19 +7,18 @@ from typing import Any
 from dash import html
 
 from frahm.plotting.style import BARE, GREEN, INK, PAIR, PIPE, SINK
-from frahm.web.figures import BARE_LINE, MAP_COLOURS, TUNED_LINE
-from frahm.web.live import MAP_CLASSES
+from frahm.web.looks import BARE_LINE, MAP_CLASSES, MAP_COLOURS, TUNED_LINE
 
 _SILENT: dict[str, Any] = {"aria-hidden": "true"}
 
 
-def _line(text: str, colour: str, width: float, style: str = "solid") -> html.Li:
+def _line(text: str, colour: str, width: float, style: str = "solid", look: str = "") -> html.Li:
     sample = html.Span(className="line", style={"borderTop": f"{width}px {style} {colour}"}, **_SILENT)
-    return html.Li([sample, text])
+    return html.Li([sample, text], className=look)
 
 
-def _mark(text: str, sign: str, colour: str) -> html.Li:
-    return html.Li([html.Span(sign, className="sign", style={"color": colour}, **_SILENT), text])
+def _mark(text: str, sign: str, colour: str, look: str = "") -> html.Li:
+    return html.Li([html.Span(sign, className="sign", style={"color": colour}, **_SILENT), text], className=look)
 
 
 def _patch(text: str, colour: str) -> html.Li:
@@ -37,14 +36,14 @@ def response_key() -> html.Ul:
         _line("exact, unstable", PIPE, 3, "dashed"),
         _line("detached", SINK, 3),
         _line("asymmetric", PAIR, 3),
-        _line("slow flow, stable", INK, 1.5),
-        _line("slow flow, unstable", INK, 1.5, "dashed"),
+        _line("slow flow, stable", INK, 1.5, look="slow-only"),
+        _line("slow flow, unstable", INK, 1.5, "dashed", look="slow-only"),
         _line(BARE_LINE, BARE, 1.5, "dotted"),
         _line(TUNED_LINE, GREEN, 2, "dashed"),
-        _mark("at the detuning set", "○", SINK),
+        _mark("at the detuning set", "○", SINK, look="slow-only"),
         _mark("attractor found", "★", GREEN),
         _mark("SN saddle-node", "▲", INK),
-        _mark("H Hopf", "■", INK),
+        _mark("H Hopf", "■", INK, look="slow-only"),
         _mark("NS Neimark-Sacker", "◆", INK),
         _mark("PD period doubling", "▼", INK),
         _mark("BP branch point", "✚", INK),

@@ -8,47 +8,17 @@ from typing import Any
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.case import Case, Pipe
-from frahm.errors import ParameterError
-from frahm.loads import vortex_shedding
-from frahm.response import ResponseCurve, frequency_response, slow_flow_map
+from frahm.case import Case
+from frahm.response import ResponseCurve, frequency_response, slow_flow_values
 from frahm.slow_flow import Folds, slow_flow_of, slow_manifold
 from frahm.systems import build_system
 
 CURVE_POINTS = 400
 _MANIFOLD_POINTS = 400
 _MAP_COLUMNS, _MAP_ROWS = 121, 60
-PLANES = ("kappa", "xi2")
 
-# Classes of the stability map: (number of responses, number of stable ones) -> code.
-MAP_CLASSES = (
-    "one response, stable",
-    "three responses, two stable",
-    "three responses, one stable",
-    "three responses, none stable",
-    "one response, unstable",
-)
+# Number of responses, and of stable ones -> position in `MAP_CLASSES`.
 _CODES = {(1, 1): 0, (3, 2): 1, (2, 2): 1, (3, 1): 2, (2, 1): 2, (3, 0): 3, (2, 0): 3, (3, 3): 1, (1, 0): 4}
-
-
-def check_shown(case: Case) -> None:
-    """Refuse a case the page cannot draw while dragging.
-
-    Raises
-    ------
-    ParameterError
-        If the case is not one mode with one cubic sink.
-    """
-    if not isinstance(case.pipe, Pipe):
-        raise ParameterError(
-            "pipe.kind", case.pipe.kind, "for this page: mode, one mode of vibration", hint="frahm run takes any case."
-        )
-    try:
-        slow_flow_of(build_system(case))
-    except ParameterError as error:
-        raise ParameterError(
-            "case", case.name, f"for this page: {error.allowed}", hint="frahm run takes any case."
-        ) from None
 
 
 def slow_curve(case: Case) -> ResponseCurve:
@@ -60,10 +30,8 @@ def slow_curve(case: Case) -> ResponseCurve:
 
 def responses_at(case: Case, detuning: float) -> tuple[Floats, Floats, np.ndarray]:
     """Pipe and relative amplitude [m] of the responses of the slow flow at one detuning, and which are stable."""
-    found = slow_flow_map(case, detuning=detuning, form=case.analysis.form)
-    pipe, relative, stability = (
-        found[name].values.reshape(-1) for name in ("pipe_amplitude", "relative_amplitude", "stability")
-    )
+    found = slow_flow_values(case, detuning=detuning, form=case.analysis.form)
+    pipe, relative, stability = (values.reshape(-1) for values in found)
     there = stability >= 0
     return pipe[there], relative[there], stability[there] == 0
 
@@ -105,7 +73,7 @@ class StabilityMap:
 
 
 def stability_map(case: Case, plane: str, span: tuple[float, float]) -> StabilityMap:
-    """How many responses the slow flow has and how many of them are stable, see `MAP_CLASSES`.
+    """How many responses the slow flow has and how many of them are stable, see `frahm.web.looks.MAP_CLASSES`.
 
     Parameters
     ----------
@@ -118,14 +86,9 @@ def stability_map(case: Case, plane: str, span: tuple[float, float]) -> Stabilit
     sigma = np.linspace(*case.analysis.detuning, _MAP_COLUMNS)
     rows = np.geomspace(*span, _MAP_ROWS)
     given: dict[str, Any] = {plane: rows[:, None]}
-    stability = slow_flow_map(case, detuning=sigma[None, :], form=case.analysis.form, **given)["stability"].values
+    _, _, stability = slow_flow_values(case, detuning=sigma[None, :], form=case.analysis.form, **given)
     responses, stable = np.sum(stability >= 0, axis=-1), np.sum(stability == 0, axis=-1)
     classes = np.full(responses.shape, -1, dtype=np.int8)
     for (total, holding), code in _CODES.items():
         classes[(responses == total) & (stable == holding)] = code
     return StabilityMap(sigma, rows, classes)
-
-
-def shedding_detuning(case: Case) -> float:
-    """Detuning [rad/s] at which the wind of the case sheds vortices."""
-    return vortex_shedding(case).detuning

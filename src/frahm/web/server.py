@@ -12,8 +12,9 @@ from werkzeug.serving import BaseWSGIServer, WSGIRequestHandler, make_server
 
 from frahm.case import Case
 from frahm.errors import ParameterError
-from frahm.web.app import build_app
-from frahm.web.guard import ADDRESS, LocalOnly
+from frahm.web.front import Front
+from frahm.web.guard import ADDRESS, LocalOnly, WsgiApp
+from frahm.web.scope import check_shown, start_detuning
 from frahm.web.sessions import Sessions
 
 DEFAULT_PORT = 8050
@@ -45,23 +46,41 @@ def page_server(case: Case, port: int) -> Iterator[BaseWSGIServer]:
     ParameterError
         If the port is taken, or the page cannot show the case.
     """
-    sessions = Sessions()
+    check_shown(case)
+    sessions, failures = Sessions(), []
+
+    def failed(error: BaseException) -> None:
+        failures.append(error)
+        server.shutdown()
+
+    front = Front(lambda: _built(case, sessions), failed)
     try:
-        app = build_app(case, sessions)
-        server = make_server(ADDRESS, _free_port(port), app.server, threaded=True, request_handler=_Quiet)
-        server.app = LocalOnly(app.server, server.port)
-        threading.Thread(target=_first_look, args=(app.server,), daemon=True).start()
+        server = make_server(ADDRESS, _free_port(port), front, threaded=True, request_handler=_Quiet)
+        server.app = LocalOnly(front, server.port)
+        front.start()
         yield server
     finally:
         sessions.close_all()
+    if failures:
+        raise failures[0]
 
 
-def _first_look(app: Any) -> None:
-    """Ask for the page once, so that the first visitor finds everything loaded."""
+def _built(case: Case, sessions: Sessions) -> WsgiApp:
+    """The application of the page; what draws is loaded while the browser reads the page."""
+    from frahm.web.app import build_app
+
+    app: Any = build_app(case, sessions).server
+    threading.Thread(target=_warm_up, args=(case,), daemon=True).start()
+    return app
+
+
+def _warm_up(case: Case) -> None:
+    """Draw once, so that the first visitor finds everything loaded."""
     # Only a head start: whatever is wrong shows to the visitor.
-    with contextlib.suppress(Exception), app.test_client() as client:
-        for path in ("/", "/_dash-layout", "/_dash-dependencies"):
-            client.get(path)
+    with contextlib.suppress(Exception):
+        from frahm.web.answers import warm_up
+
+        warm_up(case, start_detuning(case))
 
 
 def _free_port(port: int) -> int:

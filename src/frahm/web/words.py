@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from dash import html
 
 from frahm.case import Case
-from frahm.response import ResponseCurve
-from frahm.web.live import ManifoldLines
+from frahm.web.controls import controls_of
 from frahm.web.sessions import Job
+
+if TYPE_CHECKING:  # loaded when the first curve is drawn, not before the page is shown
+    from dash import html
+
+    from frahm.response import ResponseCurve
+    from frahm.web.live import ManifoldLines
 
 COMPUTING = "Computing the exact response … (the first time ever, its code is compiled, which takes about a minute)"
 LATER = "The exact response follows when the sliders rest."
+NOT_VALID = "Drawn for the last valid values: see the field marked."
+NO_SLOW_FLOW = (
+    "The slow flow is of one mode with one cubic sink: for this case the exact response is drawn, each time the "
+    "sliders rest; until then the curve of the last values stays, in a paler tint."
+)
 
 
 def slow_status(curve: ResponseCurve) -> str:
@@ -43,7 +52,9 @@ def exact_status(found: dict[str, Any]) -> str:
         words.append(f"largest stable one {_metres(stable)} at σ = {at:.3g} rad/s")
     if found["detached"]:
         words.append(f"{found['detached']} detached")
-    text = "; ".join(words) + ". Modulated motions are not on this curve: find the attractors."
+    text = "; ".join(words) + "."
+    if not found["linear"]:
+        text += " Modulated motions are not on this curve: find the attractors."
     return text + _doubts(found["unverified"])
 
 
@@ -64,9 +75,14 @@ def motion_status(found: dict[str, Any]) -> str:
 
 def attractor_table(case: Case, found: dict[str, Any]) -> html.Div:
     """Attractors with their basin fractions, and the values they belong to."""
-    values = case.absorbers[0].normalised(case.pipe.mass)
-    about = f"At σ = {found['detuning']:.4g} rad/s, κ = {values['kappa']:.5g}, ξ₂ = {values['xi2']:.4g}, "
-    about += f"ρ₂ = {values['rho2']:.4g}, wind {case.wind.speed:.4g} m/s; "
+    from dash import html
+
+    values = [
+        f"{control.symbol} = {control.value(case):.5g}"
+        for control in controls_of(case)
+        if not control.name.startswith(("wind.", "pipe."))
+    ]
+    about = f"At σ = {found['detuning']:.4g} rad/s, {', '.join(values)}, wind {case.wind.speed:.4g} m/s; "
     about += f"{found['samples']} starts, seed {found['seed']}:"
     head = html.Tr([html.Th(text) for text in ("kind", "pipe [m]", "sink [m]", "share of starts (95 %)")])
     rows = [html.Tr(_attractor_cells(row)) for row in found["attractors"]]
@@ -76,6 +92,8 @@ def attractor_table(case: Case, found: dict[str, Any]) -> html.Div:
 
 
 def _attractor_cells(row: dict[str, Any]) -> list[html.Td]:
+    from dash import html
+
     low, high = (100 * share for share in row["basin_interval"])
     share = "-" if row["basin_fraction"] is None else f"{100 * row['basin_fraction']:.3g} % ({low:.2g} to {high:.3g} %)"
     kind = "; ".join(word for word in (row["kind"], "from rest" if row["from_rest"] else "", row["outcome"]) if word)

@@ -57,7 +57,7 @@ class Visitor:
 
     def open(self):
         self.page.goto(self.address)
-        self.page.wait_for_selector("#slow-status:has-text('largest')")
+        self.page.wait_for_function("window.frahmDrawn >= 1")
         return self
 
     def rest(self):
@@ -77,7 +77,8 @@ class Visitor:
     def lines(self, figure="response"):
         """x and y of every trace as the browser draws them, None for gaps; empty ones are left out."""
         script = """(figure) => document.querySelector('#' + figure + ' .js-plotly-plot')._fullData
-            .map((t, i) => ({number: i, name: t.name, dash: t.line && t.line.dash, visible: t.visible,
+            .map((t) => ({row: t.yaxis === 'y2' ? 1 : 0, name: t.name, opacity: t.opacity, dash: t.line && t.line.dash,
+              visible: t.visible,
               x: Array.from(t.x || [], (v) => Number.isFinite(v) ? v : null),
               y: Array.from(t.y || [], (v) => Number.isFinite(v) ? v : null)}))
             .filter((t) => t.visible === true && t.x.length)"""

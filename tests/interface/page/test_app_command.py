@@ -7,6 +7,8 @@ import sys
 
 from browsing import start
 
+import frahm
+
 FRAHM = [sys.executable, "-m", "frahm"]
 
 
@@ -33,9 +35,11 @@ def test_a_port_in_use_is_named():
     assert "Traceback" not in done.stderr
 
 
-def test_cases_the_page_cannot_draw_are_refused():
-    done = run("app", "jacket-pipe-elastic", "--port", "0")
+def test_cases_the_page_cannot_draw_are_refused(tmp_path):
+    frahm.load_case("jacket-pipe").without_absorbers().to_yaml(tmp_path / "bare.yaml")
+    done = run("app", str(tmp_path / "bare.yaml"), "--port", "0")
     assert done.returncode == 2
+    assert "a case with an absorber" in done.stderr
     assert "frahm run takes any case" in done.stderr
 
 

@@ -26,8 +26,8 @@ def points_of(traces, start, dash):
     """Points (x, y) of the traces of the upper plot whose name begins so, without the gaps, sorted."""
     found = {
         (x, y)
-        for trace in traces[: len(traces)]
-        if trace["name"].startswith(start) and trace["dash"] == dash and trace["number"] < 15
+        for trace in traces
+        if trace["name"].startswith(start) and trace["dash"] == dash and trace["row"] == 0
         for x, y in zip(trace["x"], trace["y"], strict=True)
         if x is not None
     }
@@ -96,7 +96,7 @@ def test_the_detuning_moves_the_mark_and_the_manifold(visit):
     expected = found["pipe_amplitude"].values[found["stability"].values >= 0]
 
     def marked():
-        marks = [t for t in visitor.lines() if t["name"] == "at the detuning set" and t["number"] < 15]
+        marks = [t for t in visitor.lines() if t["name"] == "at the detuning set" and t["row"] == 0]
         return marks and marks[0]["x"] == [-0.05] * expected.size and np.allclose(marks[0]["y"], expected, rtol=1e-12)
 
     assert wait_until(marked)
@@ -179,6 +179,14 @@ def test_a_click_on_the_curve_shows_the_motion_there(visit):
     assert wait_until(lambda: len(visitor.lines("motion")) >= 6)
     assert max(len(trace["x"]) for trace in visitor.lines("motion")) <= 2000
 
+    def on_the_manifold():
+        return [trace["y"] for trace in visitor.lines("manifold") if trace["name"] == "motion"]
+
+    assert wait_until(on_the_manifold)
+    assert on_the_manifold()[0][-1] == pytest.approx(curve.pipe_amplitude[index], rel=1e-3)
+    visitor.field("kappa").fill("300")  # the motion of other values leaves the manifold
+    assert wait_until(lambda: not on_the_manifold())
+
 
 def test_attractors_are_searched_and_marked(visit):
     visitor = visit().rest()
@@ -191,6 +199,10 @@ def test_attractors_are_searched_and_marked(visit):
     expect(visitor.page.locator("#attractors tbody tr").first).to_contain_text(f"{found[0].pipe_peak:.4g}")
     stars = [trace for trace in visitor.lines() if trace["name"] == "attractor found"]
     assert stars[0]["y"] == [one.pipe_peak for one in found]
+    expect(visitor.page.locator("#attractors")).not_to_have_class("stale")
+    visitor.field("detuning").fill("0.01")  # elsewhere: the marks go, the table pales
+    expect(visitor.page.locator("#attractors")).to_have_class("stale")
+    assert wait_until(lambda: not [trace for trace in visitor.lines() if trace["name"] == "attractor found"])
 
 
 def endless(tmp_path):
@@ -246,7 +258,7 @@ def test_the_tuned_mass_damper_is_drawn_on_demand(visit):
     assert not [trace for trace in visitor.lines() if trace["name"].startswith("tuned")]
     visitor.page.get_by_role("button", name="Compare with a tuned mass damper").click()
     assert wait_until(lambda: any(trace["name"].startswith("tuned") for trace in visitor.lines()))
-    (tuned,) = [trace for trace in visitor.lines() if trace["name"].startswith("tuned") and trace["number"] < 15]
+    (tuned,) = [trace for trace in visitor.lines() if trace["name"].startswith("tuned") and trace["row"] == 0]
     assert max(tuned["y"]) == pytest.approx(0.0026, abs=5e-5)  # domain: of the same mass, on this pipe
 
 
@@ -418,3 +430,66 @@ def test_the_way_of_a_newcomer(visit, tmp_path):
     assert mine.digest in text
     verdict = visitor.text("job-status").removeprefix("The report was saved by the browser. ")
     assert verdict == analyse(mine).verdict
+
+
+def load(visitor, case, tmp_path):
+    case.to_yaml(tmp_path / f"{case.name}.yaml")
+    visitor.page.locator("#load input[type=file]").set_input_files(tmp_path / f"{case.name}.yaml")
+    expect(visitor.page.locator("#case-name")).to_contain_text(case.name)
+
+
+def exact_is_drawn(visitor, case):
+    """Whether what is drawn of the exact response are points of Python's curve, to 1e-9, from end to end."""
+    curve = frahm.frequency_response(case, detuning=case.analysis.detuning)
+    traces = [trace for trace in visitor.lines() if trace["opacity"] != 0.35]
+    drawn = np.concatenate([points_of(traces, "exact", dash) for dash in ("solid", "dash")])
+    if len(drawn) < 50:
+        return False
+    here = np.stack([curve.detuning, curve.pipe_peak], axis=1)
+    distance = [np.min(np.max(np.abs(here - point), axis=1)) for point in drawn]
+    ends = np.allclose([drawn[:, 0].min(), drawn[:, 0].max()], case.analysis.detuning, atol=1e-9)
+    return max(distance) < 1e-9 and ends
+
+
+def damped(kind, **law):
+    """The case with an absorber of another kind."""
+    absorber = {"name": kind, "mass": 4.94, "law": {"kind": kind, "damping": 4.16, **law}}
+    return CASE.model_validate({**CASE.to_dict(), "name": kind, "absorbers": [absorber]})
+
+
+@pytest.mark.parametrize(
+    ("case", "slider", "change"),
+    [
+        (frahm.load_case("jacket-pipe-elastic"), "position", lambda case, value: case.with_absorber(position=value)),
+        (damped("linear", stiffness=114.0), "law-stiffness", lambda case, value: damped("linear", stiffness=value)),
+        (
+            damped("polynomial", coefficients=[60.0, 0.0, 60000.0]), "law-c3",
+            lambda case, value: damped("polynomial", coefficients=[60.0, 0.0, value]),
+        ),
+    ],
+    ids=["elastic pipe", "tuned mass damper", "linear and cubic spring"],
+)  # fmt: skip
+def test_cases_without_slow_flow_are_drawn_exactly_when_the_sliders_rest(visit, tmp_path, case, slider, change):
+    visitor = visit().rest()
+    load(visitor, case, tmp_path)
+    expect(visitor.page.locator("#slow-status")).to_contain_text("each time the sliders rest")
+    expect(visitor.page.locator("#beside")).to_be_hidden()
+    visitor.rest()
+    assert wait_until(lambda: exact_is_drawn(visitor, case))
+    assert not [trace for trace in visitor.lines() if trace["name"].startswith("slow flow")]
+    before = visitor.field(slider).input_value()
+    visitor.slider(slider).focus()
+    for _ in range(30):
+        visitor.page.keyboard.press("ArrowLeft")
+    expect(visitor.field(slider)).not_to_have_value(before)
+    visitor.rest()
+    changed = change(case, float(visitor.field(slider).input_value()))
+    assert wait_until(lambda: exact_is_drawn(visitor, changed))
+    visitor.page.locator("#from-rest").click()
+    expect(visitor.page.locator("#motion-status")).to_contain_text("pipe peaks")
+    with visitor.page.expect_download() as saved:
+        visitor.page.locator("#save-curve").click()
+    assert saved.value.suggested_filename == f"{case.name}-exact.csv"
+    visitor.page.get_by_role("button", name="Fig. 6", exact=True).click()
+    expect(visitor.page.locator("#beside")).to_be_visible()
+    assert wait_until(lambda: shows(visitor, CASE.with_absorber(kappa=24.425, xi2=0.0085)))

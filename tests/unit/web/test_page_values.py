@@ -5,12 +5,13 @@ import pytest
 
 import frahm
 from frahm.web import words
-from frahm.web.controls import CONTROLS, DETUNING, reading
-from frahm.web.drawing import EXACT_KINDS, KINDS, MOST_POINTS, SLOW_KINDS, curve_lines
+from frahm.web.controls import DETUNING, controls_of, field_texts, reading, spans
+from frahm.web.drawing import MOST_POINTS, curve_lines
 from frahm.web.jobs import attractors, exact_response, motion
-from frahm.web.layout import field_texts, spans
-from frahm.web.live import MAP_CLASSES, check_shown, manifold_lines, responses_at, slow_curve, stability_map
+from frahm.web.live import manifold_lines, responses_at, slow_curve, stability_map
+from frahm.web.looks import EXACT_KINDS, KINDS, MAP_CLASSES, SLOW_KINDS
 from frahm.web.presets import PRESETS
+from frahm.web.scope import check_shown, has_slow_flow
 from frahm.web.tuned import bare_response, tuned_mass_damper_response
 
 CASE = frahm.load_case("jacket-pipe")
@@ -69,7 +70,7 @@ def test_no_bad_entry_gets_through(text):
 
 
 def test_titles_units_and_symbols_come_from_the_fields_of_the_case():
-    control = next(control for control in CONTROLS if control.name == "pipe.frequency")
+    control = next(control for control in controls_of(CASE) if control.name == "pipe.frequency")
     assert (control.title, control.unit, control.symbol) == ("Natural frequency of the pipe", "rad/s", "omega")
     for name, span in spans(CASE).items():
         assert span.position(float(TEXTS[name])) in range(1001), name
@@ -140,20 +141,94 @@ def test_the_tuned_mass_damper_is_solved_like_by_harmonic_balance():
     assert np.isnan(bare_response(CASE.with_pipe(damping_ratio=0)).pipe).sum() == 1
 
 
-def test_only_what_the_page_can_draw_is_let_in():
-    check_shown(CASE)
-    for case in (CASE.without_absorbers(), frahm.load_case("jacket-pipe-elastic")):
-        with pytest.raises(frahm.ParameterError, match="for this page"):
-            check_shown(case)
+def law(**fields):
+    """The case with another force law."""
+    return CASE.model_validate({**CASE.to_dict(), "absorbers": [{"mass": 4.94, "law": {"damping": 1.0, **fields}}]})
+
+
+ELASTIC = frahm.load_case("jacket-pipe-elastic")
+OTHERS = {
+    "elastic": ELASTIC,
+    "linear": law(kind="linear", stiffness=110.0),
+    "polynomial": law(kind="polynomial", coefficients=[50.0, 0.0, 90000.0]),
+    "bistable": law(kind="bistable", stiffness=90000.0, negative_stiffness=5.0),
+    "two": frahm.load_case("two-sinks"),
+    "springs": law(kind="transverse-springs", stiffness=5000.0, length=0.3, pretension=20.0),
+}
+
+
+def test_only_a_pipe_without_absorber_is_refused():
+    for case in (CASE, *OTHERS.values()):
+        check_shown(case)
+    with pytest.raises(frahm.ParameterError, match="for this page"):
+        check_shown(CASE.without_absorbers())
+
+
+def test_the_slow_flow_is_known_without_building_it():
+    assert has_slow_flow(CASE)
+    stopped = CASE.model_validate(
+        {**CASE.to_dict(), "absorbers": [CASE.to_dict()["absorbers"][0] | {"stops": {"gap": 0.1, "stiffness": 1e4}}]}
+    )
+    for case in (*OTHERS.values(), stopped):
+        assert not has_slow_flow(case)
+        if case is not ELASTIC:
+            with pytest.raises(frahm.ParameterError, match="one mode"):
+                frahm.slow_flow_map(case)
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_every_control_shows_and_changes_what_it_is_named_after(name):
+    case = OTHERS[name]
+    texts = field_texts(case, 0.0)
+    assert reading(case, texts).case.digest == case.digest
+    for control in controls_of(case):
+        value = control.value(case)
+        assert spans(case)[control.name].position(value) in range(1001)
+        other = 0.97 * value
+        found = reading(case, texts | {control.name: repr(other)})
+        assert found.problems == {}, control.name
+        assert control.value(found.case) == pytest.approx(other, rel=1e-12)
+        for same in controls_of(case):
+            if same.name != control.name and control.name != "pipe.wall":
+                assert same.value(found.case) == pytest.approx(same.value(case), rel=1e-12), same.name
+
+
+def test_controls_are_those_that_the_case_has():
+    names = {name: [control.name for control in controls_of(case)] for name, case in OTHERS.items()}
+    assert names["elastic"] == ["kappa", "xi2", "rho2", "position", "wind.speed", "pipe.wall", "pipe.damping_ratio"]
+    assert names["linear"][:3] == ["law.stiffness", "xi2", "rho2"]
+    assert names["polynomial"][:3] == ["law.c1", "law.c3", "xi2"]
+    assert names["bistable"][:2] == ["law.stiffness", "law.negative_stiffness"]
+    assert names["springs"][:3] == ["law.stiffness", "law.length", "law.pretension"]
+
+
+def test_bad_values_of_a_law_are_explained():
+    found = reading(OTHERS["linear"], field_texts(OTHERS["linear"], 0.0) | {"law.stiffness": "-3"})
+    assert "law.stiffness" in found.problems
+    assert "> 0" in found.problems["law.stiffness"]
+    found = reading(ELASTIC, field_texts(ELASTIC, 0.0) | {"position": "0"})  # clamped there: it would not move
+    assert "a section that moves" in found.problems["position"]
+
+
+def test_an_elastic_pipe_without_absorber_responds_as_the_linear_equations_say():
+    found = bare_response(ELASTIC)
+    curve = frahm.frequency_response(ELASTIC.without_absorbers(), detuning=ELASTIC.analysis.detuning)
+    expected = np.interp(found.detuning[::50], curve.detuning, curve.pipe_peak)
+    np.testing.assert_allclose(found.pipe[::50], expected, rtol=2e-3)  # between the points of the curve
+    damper = tuned_mass_damper_response(ELASTIC)
+    peaks = np.sort(damper.pipe[1:-1][(damper.pipe[1:-1] > damper.pipe[:-2]) & (damper.pipe[1:-1] > damper.pipe[2:])])
+    assert len(peaks) == 2  # tuned for equal peaks of an undamped pipe of one mode
+    assert peaks[0] == pytest.approx(peaks[1], rel=0.03)
+    assert np.nanmax(found.pipe) > 15 * peaks[1]
 
 
 def test_the_exact_job_draws_what_python_computes():
     found = exact_response(CASE, silent)
     curve = frahm.frequency_response(CASE, detuning=(-0.4, 0.4))
     assert found["largest"] == curve.largest()[0]
-    assert [point["detuning"] for point in found["special"]] == [point.detuning for point in curve.special_points]
-    drawn = np.concatenate([np.asarray(line["pipe_peak"], dtype=float) for line in found["lines"]])
-    assert set(drawn[np.isfinite(drawn)]) <= set(curve.pipe_peak)
+    assert found["part"]["points"][0]["x"] == [point.detuning for point in curve.special_points]
+    drawn = [line["y"] for line in found["part"]["lines"] if line["row"] == 0]
+    assert {value for values in drawn for value in values if value is not None} <= set(curve.pipe_peak)
     assert words.exact_status(found).startswith("Exact response: 1 branch;")
 
 

@@ -1,102 +1,144 @@
-// What must happen in the browser: sliders and fields follow each other, one request is under way at a time while a
-// slider is dragged (the newest values follow when the last are drawn), and a server that has ended is noticed.
+// The course of things: a change is asked about at once, with one question under way at a time (the newest values
+// follow), manifold and map when there is time, the exact response when the sliders rest; and a server that has ended
+// is noticed.
 (function () {
   "use strict";
-  const REST = 250; // ms without a change after which a slider counts as released
-  const GIVE_UP = 15000; // ms after which a request without an answer no longer holds up the next
-  const PAUSE = 120; // ms between two drawings of manifold and map
+  const page = (window.frahmPage = window.frahmPage || {});
+  const REST = 250; // ms without a change after which the sliders count as released
+  const GIVE_UP = 15000; // ms after which a question without an answer no longer holds up the next
+  const PAUSE = 150; // ms from one answer about manifold and map to the next question about them, at least
+  const SHARE = 6; // times as long as they took to draw is left to the response
   const BEAT = 2000; // ms between signs of life
-  const state = { values: null, facts: {}, set: {}, number: 0, sent: 0, waiting: false, held: 0, timer: null, session: null,
-    besideSent: 0, besideHeld: 0, besideWaiting: false, besideTimer: null };
+  const state = { case: null, session: null, plane: "kappa", tuned: false, number: 0, key: null, detuning: null, slow: true };
   const set = (id, props) => window.dash_clientside.set_props(id, props);
-  const skip = () => window.dash_clientside.no_update;
+  const say = (id, text) => { const place = document.getElementById(id); if (place.textContent !== text) place.textContent = text; };
+  const fade = (id, look) => { const place = document.getElementById(id); if (place && place.className !== look) set(id, { className: look }); };
 
-  function learn(facts, texts) {
-    state.facts = {};
-    facts.forEach((fact) => { state.facts[fact.key] = fact; });
-    state.values = {};
-    facts.forEach((fact, i) => { state.values[fact.name] = texts[i]; });
+  // One kind of question to the server: one under way at a time, and only the newest waits.
+  function asker(path, wanted, heard) {
+    const own = { sent: -1, turn: 0, since: 0, busy: false };
+    own.ask = async function () {
+      if (own.busy && Date.now() - own.since < GIVE_UP) return;
+      const number = state.number;
+      const mine = (own.turn += 1);
+      Object.assign(own, { busy: true, sent: number, since: Date.now() });
+      let answer = null;
+      try {
+        const response = await fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(wanted()) });
+        answer = response.ok ? await response.json() : null;
+        if (!response.ok) say("slow-status", "This could not be computed: the terminal that runs the page says why.");
+      } catch (error) { answer = null; } // it has ended: the beat says so
+      if (own.turn !== mine) return; // given up meanwhile
+      own.busy = false;
+      if (own.sent !== state.number && answer !== null) own.again();
+      if (answer !== null) heard(answer, number);
+    };
+    own.again = own.ask;
+    return own;
   }
 
-  function fromPosition(fact, position) {
-    const share = position / fact.steps;
-    const value = fact.logarithmic ? fact.low * Math.pow(fact.high / fact.low, share) : fact.low + share * (fact.high - fact.low);
-    return String(Number(value.toPrecision(4)));
-  }
-
-  function toPosition(fact, value) {
-    const ratio = fact.logarithmic
-      ? Math.log(value / fact.low) / Math.log(fact.high / fact.low)
-      : (value - fact.low) / (fact.high - fact.low);
-    return Math.round(fact.steps * Math.min(1, Math.max(0, ratio)));
-  }
-
-  function describe(fact, text) {
-    const slider = document.getElementById("slider-" + fact.key);
-    if (slider) slider.setAttribute("aria-valuetext", text);
-  }
+  const values = () => ({ case: state.case, session: state.session, values: page.values() });
+  const drawn = asker("drawn/response", () => Object.assign(values(), { tuned: state.tuned }), answered);
+  const beside = asker("drawn/beside", () => Object.assign(values(), { plane: state.plane, drawn: beside.key || "" }), answeredBeside);
+  beside.again = () => besides();
+  const exact = asker("drawn/exact", values, answeredExact);
+  exact.again = () => {};
+  let rest = null;
+  let pause = null;
 
   function want() {
     state.number += 1;
-    clearTimeout(state.timer);
-    if (state.waiting && Date.now() - state.held < GIVE_UP) return;
-    send();
+    clearTimeout(rest);
+    drawn.ask();
   }
+  page.changed = want;
 
-  function send() {
-    state.waiting = true;
-    state.held = Date.now();
-    state.sent = state.number;
-    set("wanted", { data: { number: state.sent, values: Object.assign({}, state.values) } });
-  }
-
-  function place(fact, text) {
-    // Set field and slider of one parameter without taking that for a change made by the visitor.
-    state.values[fact.name] = text;
-    state.set["field-" + fact.key] = text;
-    set("field-" + fact.key, { value: text });
-    const number = Number(text);
-    if (text.trim() !== "" && Number.isFinite(number)) {
-      const position = toPosition(fact, number);
-      state.set["slider-" + fact.key] = position;
-      set("slider-" + fact.key, { value: position });
+  function answered(answer, number) {
+    page.explain(answer.problems);
+    say("slow-status", answer.status);
+    if (Object.keys(answer.problems).length) {
+      window.frahmDrawn = number;
+      return;
     }
-    describe(fact, text);
+    const other = answer.key !== state.key;
+    const elsewhere = other || answer.detuning !== state.detuning;
+    const first = state.key === null;
+    Object.assign(state, { key: answer.key, detuning: answer.detuning });
+    if (state.slow !== answer.slow) arrange(answer.slow);
+    if (elsewhere) page.forgetMotion();
+    page.showResponse(answer, () => { window.frahmDrawn = number; });
+    if (other) say("exact-status", "The exact response follows when the sliders rest.");
+    if (elsewhere && !first) { // what was computed on demand belongs to other values
+      fade("motion-holder", "stale");
+      fade("attractors", "stale");
+    }
+    besides();
+    clearTimeout(rest);
+    if (number === state.number && !page.hasExact()) rest = setTimeout(settle, REST);
   }
 
-  const moved = function (...all) {
-    const facts = all.pop();
-    const count = facts.length;
-    if (state.values === null) learn(facts, all.slice(count));
-    let changed = false;
-    window.dash_clientside.callback_context.triggered.forEach((trigger) => {
-      const id = trigger.prop_id.split(".")[0];
-      const [kind, key] = [id.slice(0, id.indexOf("-")), id.slice(id.indexOf("-") + 1)];
-      const fact = state.facts[key];
-      if (!fact || state.set[id] === trigger.value || (kind === "slider" && String(state.set[id]) === String(trigger.value))) return;
-      delete state.set[id];
-      const text = kind === "slider" ? fromPosition(fact, Number(trigger.value)) : String(trigger.value === null ? "" : trigger.value);
-      if (text === state.values[fact.name]) return;
-      state.values[fact.name] = text;
-      if (kind === "slider") {
-        state.set["field-" + key] = text;
-        set("field-" + key, { value: text });
-      } else if (text.trim() !== "" && Number.isFinite(Number(text)) && !(fact.logarithmic && Number(text) <= 0)) {
-        const position = toPosition(fact, Number(text));
-        state.set["slider-" + key] = position;
-        set("slider-" + key, { value: position });
-      }
-      describe(fact, text);
-      changed = true;
-    });
-    if (changed) want();
+  function arrange(slow) {
+    state.slow = slow;
+    document.getElementById("beside").hidden = !slow;
+    document.body.classList.toggle("no-slow", !slow);
+  }
+
+  function besides() {
+    clearTimeout(pause);
+    if (!state.slow || beside.busy || beside.sent === state.number) return;
+    const early = (beside.until || 0) - Date.now();
+    if (early > 0) { pause = setTimeout(besides, early); return; }
+    beside.ask();
+  }
+
+  page.spent = (time) => { beside.until = Math.max(beside.until || 0, Date.now()) + SHARE * time; };
+
+  function answeredBeside(answer) {
+    beside.until = Date.now() + PAUSE;
+    if (!answer.manifold) return;
+    if (answer.map) beside.key = answer.key;
+    page.showBeside(answer);
+    say("manifold-status", answer.status);
+  }
+
+  function settle() {
+    say("exact-status", "Computing the exact response … (the first time ever, its code is compiled, which takes about a minute)");
+    exact.busy = false; // the newest question ends an older one
+    exact.ask();
+  }
+
+  function answeredExact(answer, number) {
+    if (!answer.key || drawn.busy || answer.key !== state.key) return; // newer values come: they ask again
+    if (answer.part) page.showExact(answer.part);
+    say("exact-status", answer.status);
+  }
+
+  // ---- what the buttons lead to
+  const opened = function (facts, kase, session) {
+    // The page itself, another case, or a preset: all fields anew.
+    const first = state.session === null;
+    state.case = JSON.stringify(kase);
+    state.session = session;
+    page.buildFields(facts);
+    hand();
+    page.forgetMotion();
+    want();
+    if (!first) return;
+    beat();
+    new MutationObserver(nameFile).observe(document.querySelector("header"), { childList: true, subtree: true });
+    nameFile();
+    window.frahmReady = true;
   };
 
-  const loaded = function (facts, texts) {
-    // Another case, or another set of values: everything is placed anew.
+  function nameFile() {
+    const file = document.querySelector("#load input[type=file]"); // it comes when its code has been loaded
+    if (file) { file.setAttribute("aria-label", "Case file to load"); file.tabIndex = -1; } // the button opens it
+  }
+
+  const placed = function (texts) {
     if (!texts) return;
-    learn(facts, facts.map((fact) => texts[fact.name]));
-    facts.forEach((fact) => place(fact, texts[fact.name]));
+    Object.entries(texts).forEach(([name, text]) => page.place(name, text));
+    hand();
     want();
   };
 
@@ -105,86 +147,41 @@
     if (button) button.setAttribute("aria-pressed", String(pressed));
   };
 
-  const chosen = function () {
-    return window.dash_clientside.callback_context.triggered[0].prop_id.split(".")[0].slice("plane-".length);
-  };
+  const chosen = () => window.dash_clientside.callback_context.triggered[0].prop_id.split(".")[0].slice("plane-".length);
 
   const again = function (plane, tuned) {
     ["kappa", "xi2"].forEach((name) => press("plane-" + name, name === plane));
-    press("tuned", (tuned || 0) % 2 === 1);
-    if (state.values !== null) want();
+    state.plane = plane;
+    state.tuned = (tuned || 0) % 2 === 1;
+    press("tuned", state.tuned);
+    if (state.session !== null) want();
   };
 
-  const drawn = function (answer) {
-    if (!answer) return;
-    const problems = answer.problems || {};
-    Object.values(state.facts).forEach((fact) => {
-      const field = document.getElementById("field-" + fact.key);
-      if (!field) return;
-      field.setAttribute("aria-describedby", "hint-" + fact.key + " problem-" + fact.key);
-      if (problems[fact.name]) field.setAttribute("aria-invalid", "true"); else field.removeAttribute("aria-invalid");
-    });
-    state.waiting = false;
-    window.frahmDrawn = answer.number;
-    const file = document.querySelector("#load input[type=file]");
-    if (file) { file.setAttribute("aria-label", "Case file to load"); file.tabIndex = -1; } // the button opens it
-    besides();
-    if (state.number !== state.sent) { send(); return; }
-    clearTimeout(state.timer);
-    if (Object.keys(problems).length === 0 && answer.exact) {
-      state.timer = setTimeout(() => set("settled", { data: { number: answer.number, values: answer.values } }), REST);
-    }
+  const marked = (lines) => { if (lines) page.showMarks(lines); };
+  const moved = (drawing) => { if (drawing) page.showMotion(drawing); };
+
+  page.clicked = function (x, y, second) {
+    page.place("detuning", String(x));
+    hand();
+    want();
+    set("clicked", { data: { detuning: x, near: second ? [null, y] : [y, null], at: Date.now() } });
   };
 
-  function besides() {
-    // Manifold and map: one request at a time too, and none so soon that the response would have to wait for it.
-    const now = Date.now();
-    clearTimeout(state.besideTimer);
-    if (state.besideSent === state.number) return;
-    if (state.besideWaiting && now - state.besideHeld < GIVE_UP) return;
-    const soon = state.besideHeld + PAUSE - now;
-    if (soon > 0 && !state.besideWaiting) { state.besideTimer = setTimeout(besides, soon); return; }
-    state.besideWaiting = true;
-    state.besideHeld = now;
-    state.besideSent = state.number;
-    set("beside", { data: { number: state.number, values: Object.assign({}, state.values) } });
+  page.mapped = function (x, y) {
+    page.place("detuning", String(Number(x.toPrecision(4))));
+    page.place(state.plane, String(Number(y.toPrecision(4))));
+    want();
+  };
+
+  // An action takes the values as the fields show them: they are handed over before it is heard of.
+  function hand() {
+    if (page.takeAll()) want();
+    set("values", { data: page.values() });
   }
+  const acts = (event) => event.target.closest && event.target.closest("button");
+  window.addEventListener("click", (event) => { if (acts(event)) hand(); }, true);
 
-  const drawnBeside = function (answer) {
-    if (!answer) return;
-    state.besideWaiting = false;
-    state.besideHeld = Date.now();
-    besides();
-  };
-
-  const started = function (session) {
-    state.session = session;
-    beat();
-    want(); // the values as they stand: from here on the server answers
-    window.frahmReady = true;
-  };
-
-  const toValue = (name, value) => {
-    const fact = Object.values(state.facts).find((one) => one.name === name);
-    if (fact) { place(fact, String(value)); }
-  };
-
-  const clicked = function (click) {
-    if (!click || !click.points || !click.points.length) return skip();
-    const point = click.points[0];
-    const rows = point.curveNumber >= window.frahmTraces ? [null, point.y] : [point.y, null];
-    toValue("detuning", Number(point.x));
-    want();
-    return { detuning: Number(point.x), near: rows, at: Date.now() };
-  };
-
-  const mapped = function (click, plane) {
-    if (!click || !click.points || !click.points.length) return;
-    toValue("detuning", Number(Number(click.points[0].x).toPrecision(4)));
-    toValue(plane, Number(Number(click.points[0].y).toPrecision(4)));
-    want();
-  };
-
+  // ---- signs of life
   let timer = null;
   async function beat() {
     clearTimeout(timer);
@@ -206,12 +203,6 @@
   window.addEventListener("pagehide", () => {
     if (state.session) navigator.sendBeacon("closed/" + state.session);
   });
-  const commit = (field) => {
-    // A field that is left, or Enter in it, is a change at once, not after the pause that typing needs.
-    if (field.id && field.id.startsWith("field-")) set(field.id, { value: field.value });
-  };
-  window.addEventListener("focusout", (event) => commit(event.target));
-  window.addEventListener("keydown", (event) => { if (event.key === "Enter") commit(event.target); });
 
-  window.dash_clientside = Object.assign({}, window.dash_clientside, { frahm: { moved, loaded, chosen, again, drawn, drawnBeside, started, clicked, mapped } });
+  window.dash_clientside = Object.assign({}, window.dash_clientside, { frahm: { opened, placed, chosen, again, marked, moved } });
 })();

@@ -1,0 +1,95 @@
+"""Answers to the script of the page: what is drawn for the values its fields show."""
+
+from __future__ import annotations
+
+import functools
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from frahm.case import Case, load_case
+from frahm.errors import ParameterError
+from frahm.web import words
+from frahm.web.controls import DETUNING, controls_of, field_texts, reading, spans, with_sink
+from frahm.web.figures import linear_lines, manifold_part, map_part, slow_part
+from frahm.web.scope import has_slow_flow, shedding_detuning
+from frahm.web.sessions import Sessions
+from frahm.web.tuned import bare_response, tuned_mass_damper_response
+
+
+@functools.lru_cache(maxsize=64)
+def _case(text: str) -> Case:
+    return load_case(json.loads(text))
+
+
+def case_of(wanted: Mapping[str, Any]) -> Case:
+    """The case that was opened, as the script sends it with every question: JSON text."""
+    return _case(wanted["case"])
+
+
+def response(wanted: Mapping[str, Any]) -> dict[str, Any]:
+    """Everything live in the response figure, or what is wrong beside which field."""
+    read = reading(case_of(wanted), wanted["values"])
+    problems = dict(read.problems)
+    if not problems:
+        try:
+            return _drawn(read.case, read.detuning, bool(wanted["tuned"]))
+        except ParameterError as error:
+            names = {control.name for control in controls_of(read.case)}
+            problems[error.name if error.name in names else DETUNING] = str(error)
+    return {"problems": problems, "status": words.NOT_VALID}
+
+
+def _drawn(case: Case, detuning: float, tuned: bool) -> dict[str, Any]:
+    slow = has_slow_flow(case)
+    part: dict[str, Any] = {"lines": [], "points": [], "tops": None}
+    status = words.NO_SLOW_FLOW
+    if slow:
+        part, curve = slow_part(case, detuning)
+        status = words.slow_status(curve)
+    part["lines"] += linear_lines("bare", bare_response(case))
+    if tuned:
+        part["lines"] += linear_lines("tuned", tuned_mass_damper_response(case))
+    shedding = shedding_detuning(case)
+    return {
+        "problems": {}, "slow": slow, "key": case.digest, "part": part, "status": status,
+        "detuning": detuning, "wind": shedding if abs(shedding) < 1e300 else None, "window": case.analysis.detuning,
+    }  # fmt: skip
+
+
+def beside(wanted: Mapping[str, Any]) -> dict[str, Any]:
+    """Slow manifold and stability map; the map only if the one that is drawn belongs to other values."""
+    read = reading(case_of(wanted), wanted["values"])
+    if read.problems or not has_slow_flow(read.case):
+        return {}
+    case, plane = read.case, wanted["plane"]
+    span = spans(case)[plane]
+    key = f"{plane} {span.low} {span.high} {with_sink(case, plane, span.low).digest}"
+    manifold, lines = manifold_part(case, read.detuning)
+    answer = {
+        "manifold": manifold, "status": words.manifold_status(lines), "key": key,
+        "now": [read.detuning, case.absorbers[0].normalised(case.pipe.mass)[plane]],
+    }  # fmt: skip
+    if wanted["drawn"] != key:
+        answer["map"] = map_part(case, plane, (span.low, span.high))
+    return answer
+
+
+def exact(wanted: Mapping[str, Any], sessions: Sessions) -> dict[str, Any]:
+    """The exact response; nothing if newer values were asked about meanwhile."""
+    read = reading(case_of(wanted), wanted["values"])
+    if read.problems:
+        return {}
+    job = sessions.of(wanted["session"]).quick.ask("exact response", read.case.to_dict())
+    if job is None:
+        return {}
+    if job.result is None:
+        return {"key": read.case.digest, "part": None, "status": f"Exact response: unverified. {job.problem}"}
+    return {"key": read.case.digest, "part": job.result["part"], "status": words.exact_status(job.result)}
+
+
+def warm_up(case: Case, detuning: float) -> None:
+    """Draw once, so that the first visitor finds everything loaded."""
+    values = field_texts(case, detuning)
+    wanted = {"case": json.dumps(case.to_dict()), "values": values, "tuned": False, "plane": "kappa", "drawn": ""}
+    response(wanted)

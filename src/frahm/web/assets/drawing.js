@@ -1,0 +1,161 @@
+// Draws the figures: what stands still came with the page (window.frahmFigures), what moves comes as lines of numbers.
+// One figure is drawn in a frame of the browser, so that every drawing is seen.
+(function () {
+  "use strict";
+  const page = (window.frahmPage = window.frahmPage || {});
+  const still = window.frahmFigures;
+  const rank = {};
+  Object.keys(still.looks.response).forEach((look, i) => { rank[look] = i; });
+  const parts = { live: null, exact: null, stale: false, marks: [], manifold: null, motion: null, now: null, map: null };
+
+  const library = new Promise((resolve) => {
+    if (window.Plotly) { resolve(); return; }
+    document.getElementById("drawing-library").addEventListener("load", resolve);
+  });
+
+  const figure = (name) => document.getElementById(name + "-figure");
+  const react = (name, data, layout) => window.Plotly.react(figure(name), data, layout, still.config);
+
+  // ---- one figure a frame, the newest of each; the response first
+  const waiting = new Map();
+  let free = false; // whether the last drawing has been seen
+
+  function soon(name, draw) {
+    waiting.delete(name);
+    waiting.set(name, draw);
+    if (free) next();
+  }
+
+  function next() {
+    free = waiting.size === 0;
+    if (free) return;
+    const name = waiting.has("response") ? "response" : waiting.keys().next().value;
+    const draw = waiting.get(name);
+    waiting.delete(name);
+    const began = performance.now();
+    try {
+      draw();
+    } finally {
+      if (name !== "response") page.spent(performance.now() - began);
+      seen(next);
+    }
+  }
+
+  const painted = new MessageChannel();
+  let after = null;
+  painted.port1.onmessage = () => { const then = after; after = null; then(); };
+
+  function seen(then) {
+    after = then;
+    const post = () => painted.port2.postMessage(0);
+    if (document.hidden) post(); else requestAnimationFrame(post);
+  }
+
+  library.then(next);
+
+  // ---- response
+  function trace(line) {
+    const axes = line.row ? { xaxis: "x2", yaxis: "y2" } : { xaxis: "x", yaxis: "y" };
+    return Object.assign({}, still.looks.response[line.look], axes, line.more, { x: line.x, y: line.y });
+  }
+
+  const upright = (x, line) => ({ type: "line", xref: "x", yref: "paper", x0: x, x1: x, y0: 0, y1: 1, layer: "below", line: line });
+
+  function drawResponse() {
+    const live = parts.live;
+    const exact = parts.exact;
+    const valid = exact && !parts.stale;
+    const older = (line) => Object.assign({}, line, { more: Object.assign({}, line.more, { opacity: 0.35 }) });
+    let lines = live.part.lines.concat(parts.marks);
+    if (exact) lines = lines.concat(valid ? exact.lines : exact.lines.map(older));
+    lines = lines.concat(valid ? exact.points : live.part.points);
+    lines.sort((a, b) => a.row - b.row || rank[a.look] - rank[b.look]);
+    const tops = (valid && exact.tops) || live.part.tops || (exact && exact.tops) || [null, null];
+    const base = still.layouts.response;
+    const axis = (own, range) => Object.assign({}, own, range ? { range: range } : {});
+    const shapes = [upright(live.detuning, { color: still.beside.color, width: 1 })];
+    if (live.wind !== null) shapes.push(upright(live.wind, { color: still.beside.wind, width: 1, dash: "dot" }));
+    const rows = lines.some((line) => line.row) ? [] : [{ look: "bare", row: 1, x: [null], y: [null] }]; // keeps its axes
+    react("response", lines.concat(rows).map(trace), Object.assign({}, base, {
+      shapes: shapes,
+      xaxis: axis(base.xaxis, live.window), xaxis2: axis(base.xaxis2, live.window),
+      yaxis: axis(base.yaxis, tops[0] && [0, tops[0]]), yaxis2: axis(base.yaxis2, tops[1] && [0, tops[1]]),
+    }));
+    listen("response", (point) => page.clicked(point.x, point.y, point.data.yaxis === "y2"));
+  }
+
+  function listen(name, heard) {
+    const box = figure(name);
+    if (box.frahmListens) return;
+    box.frahmListens = true;
+    box.on("plotly_click", (click) => { if (click && click.points && click.points.length) heard(click.points[0]); });
+  }
+
+  // ---- manifold and map
+  function drawManifold() {
+    const looks = still.looks.manifold;
+    const lines = Object.assign({}, parts.manifold.lines, parts.motion ? { motion: parts.motion } : {});
+    const data = Object.keys(looks).filter((look) => lines[look] && lines[look].x.length)
+      .map((look) => Object.assign({ type: "scatter" }, looks[look], { x: lines[look].x, y: lines[look].y }));
+    const base = still.layouts.manifold;
+    const yaxis = Object.assign({}, base.yaxis, { range: [0, parts.manifold.top] });
+    react("manifold", data, Object.assign({}, base, { yaxis: yaxis }));
+  }
+
+  function drawMap() {
+    const map = parts.map;
+    const looks = still.looks.map;
+    const base = still.layouts.map;
+    const yaxis = Object.assign({}, base.yaxis, { range: map.range, title: { text: map.title } });
+    const xaxis = Object.assign({}, base.xaxis, { range: map.window });
+    react("map", [
+      Object.assign({}, looks.classes, { x: map.x, y: map.y, z: map.z }),
+      Object.assign({}, looks.now, { x: [parts.now[0]], y: [parts.now[1]] }),
+    ], Object.assign({}, base, { xaxis: xaxis, yaxis: yaxis }));
+    listen("map", (point) => page.mapped(point.x, point.y));
+  }
+
+  // ---- what the rest of the script calls
+  page.library = library;
+
+  page.showResponse = function (answer, then) {
+    const kept = parts.live && parts.live.key === answer.key;
+    if (!kept) { // the exact curve of other values: gone, or pale if nothing live takes its place
+      if (answer.slow) parts.exact = null; else parts.stale = true;
+    }
+    if (!kept || parts.live.detuning !== answer.detuning) parts.marks = [];
+    parts.live = answer;
+    soon("response", () => { drawResponse(); then(); });
+  };
+
+  page.showExact = function (part) {
+    parts.exact = part;
+    parts.stale = false;
+    soon("response", drawResponse);
+  };
+
+  page.hasExact = () => parts.exact !== null && !parts.stale;
+
+  page.showMarks = function (lines) {
+    parts.marks = lines;
+    soon("response", drawResponse);
+  };
+
+  page.showBeside = function (answer) {
+    if (answer.map) parts.map = answer.map;
+    parts.manifold = answer.manifold;
+    const moved = String(parts.now) !== String(answer.now);
+    parts.now = answer.now;
+    soon("manifold", drawManifold);
+    if (answer.map || moved) soon("map", drawMap);
+  };
+
+  page.forgetMotion = () => { parts.motion = null; };
+
+  page.showMotion = function (drawn) {
+    soon("motion", () => react("motion", drawn.figure.data, drawn.figure.layout));
+    if (!drawn.slow) return;
+    parts.motion = { x: drawn.slow[0], y: drawn.slow[1] };
+    if (parts.manifold) soon("manifold", drawManifold);
+  };
+})();
