@@ -82,3 +82,56 @@ def test_an_interrupted_design_gives_the_best_so_far_and_says_so(tmp_path, monke
     assert "Interrupted" in shown.output
     assert "nterrupted" in (tmp_path / "out" / "summary.json").read_text(encoding="utf-8")
     assert "Traceback" not in done.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--kappa", 5, 2), "kappa: given (5.0, 2.0); allowed: two numbers (lo, hi) with lo < hi"),
+        (("--wind", 3.0, 2.5), "wind: given (3.0, 2.5)"),
+        (("--objective", "peek"), "Did you mean 'peak'?"),
+        (("--objective", "damage"), "climate: given None; allowed: a case with the section climate"),
+        (("--objective", "expected"), "climate: given None"),
+        (("--quantile", 0.9), "design.quantile: given 0.9; allowed: nothing where nothing scatters"),
+        (("--quantile", 1.5, "--scatter", 0.1), "quantile: given 1.5"),
+        (("--position", 0, 1), "design.position: given (0.0, 1.0); allowed: nothing, because a pipe given as one mode"),
+        (("--masses", 0.01, 0.02, "--mass-ratio", 0.02), "--masses"),
+    ],
+)
+def test_what_the_case_lacks_or_a_range_is_named(tmp_path, arguments, words):
+    done = design(tmp_path, *arguments)
+    assert done.exit_code == 2
+    assert words in done.output.replace("\n", " ")
+    assert "Traceback" not in done.output
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
+def test_damage_needs_a_detail_besides_the_climate():
+    climate = {"duration": "20 year", "weibull": {"scale": 7, "shape": 2}}
+    case = frahm.load_case(frahm.load_case("jacket-pipe").to_dict() | {"climate": climate})
+    with pytest.raises(frahm.ParameterError, match="fatigue: given None; allowed: a case with the section fatigue"):
+        frahm.design_absorber(case, objective="damage")
+    with pytest.raises(frahm.ParameterError, match=r"design\.wind"):
+        frahm.design_absorber(case, objective="expected", wind=(2.5, 3.0))
+
+
+def test_a_section_design_with_a_typing_error_is_refused_with_file_and_line(tmp_path):
+    text = frahm.load_case("jacket-pipe").to_yaml().replace("design: null", "design:\n  objektive: rms")
+    file = tmp_path / "pipe.yaml"
+    file.write_text(text, encoding="utf-8")
+    done = CliRunner().invoke(app, ["check", str(file)])
+    assert done.exit_code == 2
+    line = 1 + text.splitlines().index("  objektive: rms")
+    assert f"pipe.yaml:{line}: design.objektive" in done.output.replace("\n", "")
+    assert "objective" in done.output
+
+
+def test_a_place_beyond_the_pipe_is_refused():
+    with pytest.raises(frahm.ParameterError, match=r"design\.position.*0 to 31\.2 m"):
+        frahm.design_absorber("jacket-pipe-elastic", position=(20.0, 40.0))
+
+
+def test_springs_that_do_not_fit_name_what_binds(tmp_path):
+    done = design(tmp_path, "--spring-stress", 1e4)
+    assert done.exit_code == 2
+    assert "coil springs of 0.01 MPa that fit into their length" in done.output.replace("\n", " ")

@@ -1,7 +1,7 @@
 """Room `design`: the best absorber, verified over all attractors and compared with its rivals."""
 
 from frahm.design.absorber import DesignedAbsorber, parameters_text, with_design
-from frahm.design.designing import design_absorber, verified_designs
+from frahm.design.designing import check_design, design_absorber, verified_designs
 from frahm.design.objective import Objective
 from frahm.design.pareto import pareto_front
 from frahm.design.settings import DesignSettings
@@ -14,6 +14,7 @@ __all__ = [
     "DesignedAbsorber",
     "Objective",
     "Rival",
+    "check_design",
     "design_absorber",
     "parameters_text",
     "pareto_front",

@@ -111,6 +111,18 @@ def design_absorber(
     return work.study(interrupted)
 
 
+def check_design(case: Case, mass_ratio: float | tuple[float, float] | None = None, **changes: Any) -> None:
+    """Refuse what `design_absorber` would refuse before it searches.
+
+    Raises
+    ------
+    ParameterError
+        For bad input, or a case that lacks what the objective needs.
+    """
+    problem = Problem.of(case, settings_for(case, mass_ratio, changes=changes))
+    problem.check_host()
+
+
 def verified_designs(
     case: Case | str | os.PathLike[str] | Mapping[str, Any],
     settings: Design,

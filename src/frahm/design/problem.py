@@ -88,6 +88,10 @@ class Problem:
         )
         return cls(case, settings, objective, windows, wide, conditions, limits)
 
+    def check_host(self) -> None:
+        """Refuse a case whose other absorbers are nonlinear, or whose absorber sits where nothing moves."""
+        self._host(None if self.settings.position is None else self.settings.position[1])
+
     @property
     def screened(self) -> int:
         """Designs judged by the closed form so far."""
