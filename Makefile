@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 
-.PHONY: setup run reproduce test lint types bench docs scatter-study examples validation clean
+.PHONY: setup run reproduce test lint types bench docs scatter-study where-a-sink-wins examples validation clean
 
 setup: $(STAMP)
 
@@ -40,6 +40,9 @@ docs: setup
 
 scatter-study: setup
 	$(BIN)/python examples/scatter_study.py
+
+where-a-sink-wins: setup
+	$(BIN)/python examples/where_a_sink_wins.py
 
 examples: setup
 	for name in elastic_fatigue design_a_sink; do \
