@@ -136,6 +136,25 @@ def test_a_design(capsys, monkeypatch, tmp_path):
     )
 
 
+def test_a_sink_for_the_first_mode_takes_more_off_the_second_than_a_tuned_damper():
+    space = runpy.run_path(str(EXAMPLES / "where_a_sink_wins.py"))
+    peaks = space["second_mode"]()
+    assert peaks["sink"] < 0.6 * peaks["tuned"]
+    case = frahm.load_case("jacket-pipe-elastic").with_pipe(lift="uniform")
+    # the bare pipe by hand: the resonance of the second mode, whose force and mass are those of the modes alone
+    modal, speed = case.pipe.modal, case.pipe.modal.frequencies[1] * 0.762 / (2 * np.pi * 0.225)
+    lift = 0.5 * 0.4535 * 1.225 * speed**2 * 0.762
+    second = lift * modal.lift_lengths[1] / modal.masses[1] / (2 * 0.0015 * modal.frequencies[1] ** 2)
+    assert peaks["none"] == pytest.approx(abs(second * modal.displacement(31.2)[1]), rel=0.02)
+    sink = frahm.design.with_design(case, space["SINK"])
+    curve = frahm.frequency_response(sink, wind=space["SECOND_MODE"])
+    at = int(np.argmax(curve.pipe_peak))
+    system = frahm.build_system(sink.with_wind(speed=float(curve.wind_speed[at])))
+    motion = frahm.integrate(system, frequency=float(curve.frequency[at]), periods=3000, samples_per_period=32)
+    last = motion.x[-32 * 50 :] @ system.output
+    assert np.max(np.abs(last)) == pytest.approx(peaks["sink"], rel=5e-3)
+
+
 def test_every_example_is_run_somewhere():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     tests = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "tests").rglob("test_*.py"))

@@ -70,7 +70,7 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
 
 
 def least_stroke(study: DesignStudy) -> str:
-    """The stroke below which no absorber of the mass can balance the force, at the pipe's frequency [m]."""
+    """Motion of the mass below which no absorber balances the force, at the pipe's frequency [m]."""
     ratio = study.best.design.rho2 if study.best.design else math.nan
     case = study.case
     return number(vortex_shedding(case).lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
