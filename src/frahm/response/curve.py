@@ -14,6 +14,7 @@ from frahm.arrays import Floats, labelled
 if TYPE_CHECKING:
     import xarray as xr
 
+_MARGINAL = 1e-7  # growth over frequency below which a special point is met: 1e-9 there, 1e-5 at its neighbours
 SPECIAL_KINDS = ("saddle-node", "hopf", "neimark-sacker", "period-doubling", "branch-point")
 
 
@@ -142,9 +143,17 @@ class ResponseCurve:
             columns["wind_speed"] = self.wind_speed[on]
         return Branch(number=number, detached=self.detached[number], asymmetric=self.asymmetric[number], **columns)
 
+    @property
+    def stable_or_limit(self) -> np.ndarray:
+        """Where a response is stable, or the limit of stable ones: at a special point rounding decides which."""
+        return np.asarray(self.growth_rate <= _MARGINAL * self.frequency)
+
     def largest(self, *, stable_only: bool = False) -> tuple[float, float]:
-        """Largest pipe peak [m] on the curve and its frequency [rad/s]; NaN if no point qualifies."""
-        peak = np.where(self.stable, self.pipe_peak, -np.inf) if stable_only else self.pipe_peak
+        """Largest pipe peak [m] on the curve and its frequency [rad/s]; NaN if no point qualifies.
+
+        With `stable_only` of stable responses and of the ends of their ranges.
+        """
+        peak = np.where(self.stable_or_limit, self.pipe_peak, -np.inf) if stable_only else self.pipe_peak
         if peak.size == 0 or not np.isfinite(np.max(peak)):
             return float("nan"), float("nan")
         index = int(np.argmax(peak))

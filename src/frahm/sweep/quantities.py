@@ -19,7 +19,6 @@ from frahm.sweep.study import Study
 from frahm.sweep.variables import at_window
 
 _ROUGH = 1e-3  # residual of a response that is worth a word, as in the response curve
-_MARGINAL = 1e-7  # growth over frequency below which a special point is met: 1e-9 there, 1e-5 at its neighbours
 _INNER = ("kappa", "xi2", "detuning")
 
 
@@ -153,7 +152,7 @@ def _exact_curve(point: Point, asked: Any) -> Found:
 
 
 def _of_curve(curve: ResponseCurve, counted: dict[str, str]) -> Found:
-    (peak, at), (stable, stable_at) = curve.largest(), _largest_stable(curve)
+    (peak, at), (stable, stable_at) = curve.largest(), curve.largest(stable_only=True)
     omega = float(curve.frequency[0] - curve.detuning[0]) if curve.frequency.size else float("nan")
     data = curve.to_dataset()
     detached = [branch.pipe_peak for branch in curve.branches if branch.detached]
@@ -164,7 +163,7 @@ def _of_curve(curve: ResponseCurve, counted: dict[str, str]) -> Found:
             "stable_peak_detuning": stable_at - omega,
             "pipe_peak": peak,
             "peak_detuning": at - omega,
-            "stable_relative_peak": _largest(curve.relative_peak[_stable_or_at_its_end(curve)]),
+            "stable_relative_peak": _largest(curve.relative_peak[curve.stable_or_limit]),
             "branches": len(curve.branches),
             "detached_branches": len(detached),
             "detached_pipe_peak": _largest(np.concatenate(detached)) if detached else float("nan"),
@@ -175,20 +174,6 @@ def _of_curve(curve: ResponseCurve, counted: dict[str, str]) -> Found:
         },
         curve.unverified,
     )
-
-
-def _largest_stable(curve: ResponseCurve) -> tuple[float, float]:
-    """Largest pipe peak [m] of stable responses, the ends of stable ranges included, and its frequency [rad/s]."""
-    on = np.flatnonzero(_stable_or_at_its_end(curve) & np.isfinite(curve.pipe_peak))
-    if not on.size:
-        return float("nan"), float("nan")
-    at = on[np.argmax(curve.pipe_peak[on])]
-    return float(curve.pipe_peak[at]), float(curve.frequency[at])
-
-
-def _stable_or_at_its_end(curve: ResponseCurve) -> np.ndarray:
-    """Where a response is stable or the limit of stable ones; at a special point rounding decides which."""
-    return np.asarray(curve.growth_rate <= _MARGINAL * curve.frequency)
 
 
 def _responses(point: Point, asked: Any) -> Found:
