@@ -121,3 +121,22 @@ def with_design(case: Case, design: DesignedAbsorber, name: str | None = None) -
     return Case(
         **({key: getattr(case, key) for key in case.model_fields_set} | {"absorbers": (new, *case.absorbers[1:])})
     )
+
+
+def without_first(case: Case) -> Case:
+    """The case without the absorber that is designed; others stay."""
+    return Case(**({key: getattr(case, key) for key in case.model_fields_set} | {"absorbers": case.absorbers[1:]}))
+
+
+def left_out(case: Case) -> list[str]:
+    """What the case's first absorber has that a design does not, in sentences."""
+    if not case.absorbers:
+        return []
+    old, found = case.absorbers[0], []
+    if old.stops is not None:
+        found.append(f"The end stops of the case are left out; their gap of {old.stops.gap:.4g} m limits the stroke.")
+    if old.friction is not None:
+        found.append("The dry friction of the case's absorber is left out: run best.yaml with it put back.")
+    if old.gravity:
+        found.append("The gravity along the motion of the case's absorber is left out: see the sag.")
+    return found

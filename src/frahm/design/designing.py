@@ -9,9 +9,11 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from frahm import __version__
 from frahm.case import FAMILIES, Case, Design, load_case
-from frahm.design.absorber import DesignedAbsorber, absorber_of, parameters_text, with_design
+from frahm.design.absorber import DesignedAbsorber, absorber_of, parameters_text, with_design, without_first
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import Windows, exact_birth
 from frahm.design.finalists import Finalist, finalists
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 Progress = Callable[[str, int, int], None]
 _MOST_FINALISTS = 4
 _WORSE, _WORSE_MEAN = 1.25, 2.0  # verified over expected value from where on a finalist is worse than it looked
+_STROKE_SLACK = 1.001
 _ATTEMPTS = 3  # searches of a family whose finalists all fail
 _ALIKE = 0.01  # relative difference of all parameters below which two finalists are one
 _JUMP = 1.1  # a design whose peak grows by more than this beside the force has met a detached curve
@@ -166,7 +169,8 @@ class _Designing:
             rival = self.designed(family)
             if family == self.settings.family:
                 if rival is None:
-                    hint = f"No design keeps them; what binds: {self._binding(family)}."
+                    reasons = "".join(f" {reason}" for reason in self.found.discarded[-1:])
+                    hint = f"No design keeps them; what binds: {self._binding(family)}.{reasons}"
                     raise ParameterError("limits", self._limits_text(), "limits that a design can keep", hint=hint)
                 self.found.best = rival
             if rival is not None:
@@ -230,6 +234,11 @@ class _Designing:
             checked = self._verify(with_design(self.case, finalist.design))
             rival = _rival(_DEVICES[family], finalist.design, checked, finalist.force_margin)
             more = self._with_margin(rival)
+            reason = self._beyond(rival.design, max(checked.relative_peak, more.relative_peak if more else 0.0))
+            if reason:
+                self._discard(rival, reason)
+                failed.append(finalist.design)
+                continue
             if more is not None and more.pipe_peak > _JUMP * self.settings.force_margin * checked.pipe_peak:
                 self._discard(
                     rival, f"with {self.settings.force_margin:g} times the force it is {more.pipe_peak:.4g} m"
@@ -252,10 +261,24 @@ class _Designing:
     def _cornered(self, family: str) -> Rival | None:
         """For the mixture, the better of its corners: the optimum over the family is never worse than either."""
         corners = [self.found.rivals[n] for n in ("sink", "tuned mass damper") if n in self.found.rivals]
+        if self.settings.family == "mixed":
+            corners = [rival for rival in corners if rival.design and self.problem.admits(rival.design)]
         if family != "mixed" or not corners:
             return None
         corner = min(corners, key=lambda rival: (not rival.verified, rival.value))
         return replace(corner, name="mixed")
+
+    def _beyond(self, design: DesignedAbsorber | None, stroke: float) -> str:
+        """Which limit the stroke [m] of all attractors, force margin included, breaks; empty if none."""
+        limits, host = self.limits, self.case.pipe.mass
+        if design is None:
+            return ""
+        if stroke > limits.stroke * _STROKE_SLACK:
+            return f"its stroke is {stroke:.4g} m, force margin included, beyond {limits.stroke:.4g} m"
+        row = np.array([[0.0, host * design.linear, host * design.kappa, 0.0, 0.0]])
+        if limits.filling(row, np.array([stroke]))[0] > _STROKE_SLACK:
+            return f"coil springs for its stroke of {stroke:.4g} m do not fit into their length"
+        return ""
 
     def _with_margin(self, rival: Rival) -> Verification | None:
         """Worst case with the margin on the force; None where there is none, or no nonlinear spring."""
@@ -299,7 +322,7 @@ class _Designing:
     def _others(self) -> None:
         """The pipe without absorber, and the case's own."""
         self._step("no absorber")
-        self.found.rivals["none"] = _rival("none", None, self._verify(self.case.without_absorbers()), math.inf)
+        self.found.rivals["none"] = _rival("none", None, self._verify(without_first(self.case)), math.inf)
         if self.case.absorbers:
             self._step("the case's own absorber")
             problem, most = self.problem, 1.1 * self.settings.force_margin
@@ -351,7 +374,7 @@ class _Designing:
 
     def _rival_system(self, rival: Rival) -> System:
         if rival.name == "none":
-            return build_system(self.case.without_absorbers())
+            return build_system(without_first(self.case))
         if rival.name == "case" or rival.design is None:
             return build_system(self.case)
         return self.system_of(rival.design)
@@ -373,6 +396,9 @@ class _Designing:
                 return None, discarded
             design = kept[0].design
             checked = self._verify(with_design(self.case, design))
+            reason = self._beyond(design, checked.relative_peak)
+            if reason:
+                return None, [*discarded, f"With a force margin of {margin:g}: {reason}."]
             return MarginPoint(
                 margin, design, checked.value, checked.pipe_peak, checked.verified, checked.tier
             ), discarded
@@ -420,7 +446,9 @@ class _Designing:
             as_built_margin=found.built_margin,
             screened=self.problem.screened,
             discarded=tuple(dict.fromkeys(found.discarded)),
-            verdict=verdict(rivals, self.settings.errors, found.table, self.settings.scatter, self.objective),
+            verdict="Interrupted before the devices could be compared."
+            if interrupted
+            else verdict(rivals, self.settings.errors, found.table, self.settings.scatter, self.objective),
             unverified=tuple(dict.fromkeys(doubts)),
             interrupted=interrupted,
             version=__version__,

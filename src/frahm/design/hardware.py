@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from frahm.case import Absorber, Case, PolynomialLaw
-from frahm.design.absorber import DesignedAbsorber
+from frahm.case import Case, PolynomialLaw
+from frahm.design.absorber import DesignedAbsorber, left_out, with_design
 from frahm.design.springs import ALLOWED_SHEAR, MOST_SPRING_STROKE, SPRING_INDEX, coil_springs
 from frahm.errors import check_number
 
@@ -67,12 +67,13 @@ def as_built(case: Case, design: DesignedAbsorber, stroke: float, room: float | 
     for factor in odd:
         coefficients += [k3 * factor, 0.0]
     law = PolynomialLaw(coefficients=tuple(coefficients[:-1]), damping=host * design.xi2)
-    old = case.absorbers[0] if case.absorbers else None
-    kept = {} if old is None else {key: getattr(old, key) for key in old.model_fields_set}
-    place = {} if design.position is None else {"position": design.position}
-    new = Absorber(**(kept | place | {"mass": host * design.rho2, "law": law}))
+    designed = with_design(case, design)
+    new = designed.absorbers[0].model_copy(update={"law": law})
     return Case(
-        **({key: getattr(case, key) for key in case.model_fields_set} | {"absorbers": (new, *case.absorbers[1:])})
+        **(
+            {key: getattr(designed, key) for key in designed.model_fields_set}
+            | {"absorbers": (new, *designed.absorbers[1:])}
+        )
     )
 
 
@@ -96,10 +97,10 @@ def hardware(
     Returns
     -------
     Hardware
-        Two transverse springs of free length L on either side (k3 = k_s/L^2, L so that the stroke is a quarter of it),
-        or two wires of length L (k3 = E A/L^3); linear springs beside them, or a pretension T0 in them that adds
-        2 T0/L. Coil springs by tau = 8 F C K/(pi d^2) with Wahl's factor K and k = G d/(8 C^3 n) (textbook formulas,
-        secondary).
+        Two transverse springs of length L on either side, L so that the stroke is a quarter of it, with the pretension
+        T0 = k1 L/2 that the linear part needs: k3 = (k_s - T0/L)/L^2. Or two wires of length L (k3 = E A/L^3) with
+        the same pretension. Coil springs by tau = 8 F C K/(pi d^2) with Wahl's factor K and k = G d/(8 C^3 n)
+        (textbook formulas, secondary).
     """
     host = case.pipe.mass
     mass, k1, k3, c = (host * value for value in (design.rho2, design.linear, design.kappa, design.xi2))
@@ -120,28 +121,29 @@ def hardware(
         items += _wires(k1, k3, stroke)
     sag = _sag(mass * GRAVITY, k1, k3)
     items.append(HardwareItem("sag if gravity acts along the motion", sag, "m", "k1 s + k3 s^3 = m g"))
-    return Hardware(tuple(items), _warnings(design, stroke, sag))
+    return Hardware(tuple(items), (*left_out(case), *_warnings(design, stroke, sag)))
 
 
 def _transverse_springs(
     k1: float, k3: float, stroke: float, frequency: float, room: float | None, stress: float | None
 ) -> list[HardwareItem]:
     springs = [float(value) for value in coil_springs(k1, k3, stroke, room, stress)]
-    length, stiffness, extension, pretension, force, wire, coils, solid = springs
+    length, free, stiffness, extension, pretension, force, wire, coils, solid = springs
     top = ALLOWED_SHEAR if stress is None else stress
     swing = 0.5 * top * (1 - pretension / force)
     origin = "stroke over 0.25: force within 4.5 % of cubic" if room is None else "the room given"
     items = [
-        HardwareItem("spring free length L, each side", length, "m", origin),
-        HardwareItem("spring stiffness k_s, each side", stiffness, "N/m", "k3 L^2"),
-        HardwareItem("spring extension at the stroke", extension, "m", "sqrt(L^2 + z^2) - L"),
+        HardwareItem("spring length L in the middle, each side", length, "m", origin),
+        HardwareItem("spring free length, each side", free, "m", "L - T0/k_s"),
+        HardwareItem("spring stiffness k_s, each side", stiffness, "N/m", "k3 L^2 + k1/2"),
+        HardwareItem("spring extension by the stroke", extension, "m", "sqrt(L^2 + z^2) - L"),
         HardwareItem("spring force at the stroke", force, "N", "k_s times extension, with pretension"),
         HardwareItem("exact over cubic force at the stroke", transverse_pair_ratio(stroke / length), "-", "exact law"),
         HardwareItem(
             "coil spring wire diameter", wire, "m", f"shear stress {top / 1e6:g} MPa, C = {SPRING_INDEX:g} (secondary)"
         ),
         HardwareItem("coil spring active coils", coils, "-", "G d/(8 C^3 k_s) (secondary)"),
-        HardwareItem("coil spring solid over free length", solid / length, "-", "(n + 2) d/L: below 1 it fits"),
+        HardwareItem("coil spring solid over free length", solid / free, "-", "(n + 2) d, below 1 it fits"),
         HardwareItem("spring extensions a year", 2 * frequency / (2 * math.pi) * _YEAR, "-", "two a cycle, all year"),
         HardwareItem("shear stress amplitude in the springs", swing, "Pa", "half of what the stroke adds"),
         HardwareItem(

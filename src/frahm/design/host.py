@@ -22,6 +22,7 @@ from frahm.design.disturbance import Disturbance
 from frahm.errors import ParameterError
 from frahm.systems import System
 
+_OFF_RESONANCE = 1e-10
 Lift = Callable[[Floats], Floats]
 
 
@@ -88,6 +89,8 @@ class Host:
     forcing, attachment, output : ndarray, shape (n,)
     frequency : float
         Reference frequency omega [rad/s].
+    other_damping, other_stiffness : ndarray, shape (n, n)
+        Of linear absorbers that stay as they are when the pipe is off.
     """
 
     mass: Floats
@@ -97,6 +100,8 @@ class Host:
     attachment: Floats
     output: Floats
     frequency: float
+    other_damping: Floats
+    other_stiffness: Floats
 
     @functools.cached_property
     def modal_mass(self) -> float:
@@ -108,7 +113,7 @@ class Host:
     def modal_damping(self) -> float:
         """Damping coefficient over mass of the governing mode, 2 zeta omega [1/s]."""
         phi = self._governing_mode
-        return float(phi @ self.damping @ phi)
+        return float(phi @ (self.damping + self.other_damping) @ phi)
 
     @functools.cached_property
     def blocked_force(self) -> float:
@@ -127,7 +132,7 @@ class Host:
         """The mode whose natural frequency is nearest the reference frequency, of unit modal mass."""
         import scipy.linalg
 
-        squares, modes = scipy.linalg.eigh(self.stiffness, self.mass)
+        squares, modes = scipy.linalg.eigh(self.stiffness + self.other_stiffness, self.mass)
         frequencies = np.sqrt(np.maximum(squares, 0.0))
         index = int(np.argmin(np.abs(frequencies - self.frequency)))
         if abs(self.attachment @ modes[:, index]) < 1e-9 * np.max(np.abs(modes[:, index])):
@@ -175,9 +180,11 @@ class Host:
     ) -> tuple[Complexes, Complexes, Complexes, Complexes]:
         """a, u_F, b, x_F at frequencies (W,) of the pipe under a disturbance."""
         d = disturbance or Disturbance()
-        W = frequency[:, None, None]
-        damping = d.pipe_frequency * d.pipe_damping * self.damping
-        D = d.pipe_frequency**2 * self.stiffness - W * W * self.mass + 1j * W * damping
+        # an undamped pipe has no receptance right at its resonance
+        W = (frequency * (1 + _OFF_RESONANCE))[:, None, None]
+        damping = d.pipe_frequency * d.pipe_damping * self.damping + self.other_damping
+        stiffness = d.pipe_frequency**2 * self.stiffness + self.other_stiffness
+        D = stiffness - W * W * self.mass + 1j * W * damping
         force = np.column_stack([self.attachment, d.load * self.forcing]).astype(complex)
         sides = np.linalg.solve(D, np.broadcast_to(force, (len(frequency), *force.shape)))
         at = np.asarray(self.attachment @ sides, dtype=complex)
@@ -197,24 +204,26 @@ def host_of(system: System) -> Host:
         raise ParameterError("absorbers", 0, "a system with an absorber to be designed")
     direction = system.elements[0].direction
     own = _own_coordinate(system, direction)
-    stiffness, damping = np.array(system.stiffness), np.array(system.damping)
+    other_stiffness, other_damping = np.zeros((2, system.size, system.size))
     for index, element in enumerate(system.elements[1:], start=1):
         if not element.law.is_linear:
             hint = "One absorber is designed at a time; others of the case may have linear springs."
             raise ParameterError(f"absorbers[{index}].law", "nonlinear", "a linear spring", hint=hint)
         n = element.direction
-        stiffness += element.law.coefficients[0] * np.outer(n, n)
-        damping += element.law.damping * np.outer(n, n)
+        other_stiffness += element.law.coefficients[0] * np.outer(n, n)
+        other_damping += element.law.damping * np.outer(n, n)
     rest = np.arange(system.size) != own
     keep = np.ix_(rest, rest)
     return Host(
         mass=np.array(system.mass[keep]),
-        damping=damping[keep],
-        stiffness=stiffness[keep],
+        damping=np.array(system.damping[keep]),
+        stiffness=np.array(system.stiffness[keep]),
         forcing=np.array(system.forcing[rest]),
         attachment=-direction[rest] / direction[own],
         output=np.array(system.output[rest]),
         frequency=system.reference_frequency,
+        other_damping=other_damping[keep],
+        other_stiffness=other_stiffness[keep],
     )
 
 

@@ -22,7 +22,7 @@ from frahm.design.search import Corrections, Limits, TierOne
 from frahm.design.settings import DesignSettings
 from frahm.design.space import design_space
 from frahm.errors import ParameterError
-from frahm.loads import wind_climate
+from frahm.loads import vortex_shedding, wind_climate
 from frahm.response.wind import WindAxis, wind_axis
 from frahm.systems import build_system
 
@@ -83,9 +83,9 @@ class Problem:
         conditions = disturbances(
             settings.scatter, settings.quantile, settings.scatter_samples, settings.seed, lock_in=axis is None
         )
-        limits = Limits(
-            settings.force_margin, settings.most_stroke, False, settings.spring_length, settings.spring_stress
-        )
+        stops = case.absorbers[0].stops if case.absorbers else None
+        stroke = min(settings.most_stroke, math.inf if stops is None else stops.gap)
+        limits = Limits(settings.force_margin, stroke, False, settings.spring_length, settings.spring_stress)
         return cls(case, settings, objective, windows, wide, conditions, limits)
 
     def check_host(self) -> None:
@@ -103,6 +103,15 @@ class Problem:
         if (family, most) not in self.tiers:
             self.tiers[family, most] = self._tier(family, most, self.place(family))
         return self.tiers[family, most]
+
+    def admits(self, design: DesignedAbsorber) -> bool:
+        """Whether a design keeps the ranges of spring and damper."""
+        ranges = {name: getattr(self.settings, name) for name in ("linear", "kappa", "quintic", "xi2")}
+        slack = 1e-6
+        return all(
+            span is None or span[0] * (1 - slack) <= getattr(design, name) <= span[1] * (1 + slack)
+            for name, span in ranges.items()
+        )
 
     def avoid(self, family: str, design: DesignedAbsorber) -> None:
         """Search a family no longer near a design that failed."""
@@ -160,7 +169,8 @@ class Problem:
             host.conditions(self.disturbances, wide, _BIRTH_POINTS, moving=lift is None, lift=lift),
             self._climate(host, place) if self.objective.over_climate else None,
         )
-        space = design_space(host, self.case.pipe.mass, family, self.settings)
+        settings = self.settings if family == self.settings.family else self.settings.for_rival()
+        space = design_space(host, self.case.pipe.mass, family, settings)
         return TierOne(screening, dataclasses.replace(space, position=place), self.objective, self.limits)
 
     def _climate(self, host: Host, place: float | None) -> ClimateMean:
@@ -191,6 +201,8 @@ class Problem:
 def _check(case: Case, settings: DesignSettings, objective: Objective) -> None:
     if objective.over_climate:
         wind_climate(case)
+    if vortex_shedding(case).lift == 0:
+        raise ParameterError("wind", case.wind.lift_coefficient, "a wind with lift: without it nothing moves the pipe")
     if objective.name == "damage":
         fatigue_section(case)
     if settings.wind is not None and objective.over_climate:

@@ -76,7 +76,7 @@ class Limits:
         if self.stress is None:
             return np.zeros(len(designs))
         springs = coil_springs(designs[:, LINEAR], designs[:, CUBIC], stroke, self.room, self.stress)
-        return np.where(designs[:, CUBIC] > 0, springs.solid / springs.length, 0.0)
+        return np.where(designs[:, CUBIC] > 0, springs.solid / springs.free, 0.0)
 
 
 @dataclass(eq=False)

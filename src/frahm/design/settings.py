@@ -67,6 +67,10 @@ class DesignSettings(Design):
         """The same with some of them changed."""
         return DesignSettings(**(self.given() | changes))
 
+    def for_rival(self) -> DesignSettings:
+        """The same without the ranges of spring and damper, which belong to the family asked for."""
+        return self.changed(linear=None, kappa=None, quintic=None, xi2=None)
+
     def given(self) -> dict[str, Any]:
         """Those that were given, by name."""
         return {name: getattr(self, name) for name in self.model_fields_set}

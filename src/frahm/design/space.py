@@ -17,6 +17,7 @@ MASS, LINEAR, CUBIC, DAMPING, QUINTIC = range(5)  # columns of a design: m, k1, 
 _NAMES = {LINEAR: "linear", CUBIC: "kappa", DAMPING: "xi2", QUINTIC: "quintic"}
 # Multiples of the scales below that the default ranges reach; the optima of all pipes lie well inside.
 _REACH = {LINEAR: (0.0, 1.6), CUBIC: (1e-3, 20.0), DAMPING: (0.01, 2.0), QUINTIC: (1e-3, 20.0)}
+_NEXT_TO_NOTHING = 1e-6  # of the upper end
 _POWER = {LINEAR: 1, CUBIC: 3, DAMPING: 1, QUINTIC: 5}  # of the mass that a scale grows with
 
 
@@ -109,12 +110,10 @@ def design_space(host: Host, host_mass: float, family: str, settings: DesignSett
         asked = getattr(settings, _NAMES[column])
         reach = _REACH[column]
         lo, hi = (v * scales[column] for v in reach) if asked is None else (v * host_mass for v in asked)
-        # a range that starts at zero has no logarithm: a thousandth of what matters stands for none
-        least = 1e-3 * reach[0] * scales[column]
         if column == LINEAR:
             bounds.append((lo, hi))
-        else:
-            bounds.append((math.log(max(lo, least)), math.log(max(hi, 2 * least))))
+        else:  # a range that starts at zero has no logarithm: what hardly matters stands for none
+            bounds.append((math.log(lo or min(_NEXT_TO_NOTHING * hi, 1e-3 * reach[0] * scales[column])), math.log(hi)))
         powers.append(_POWER[column] if asked is None and masses is not None else 0)
     columns = ((MASS,) if masses is not None else ()) + columns
     lower, upper = (np.array(ends) for ends in zip(*bounds, strict=True))

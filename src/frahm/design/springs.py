@@ -18,17 +18,19 @@ _END_COILS = 2.0
 
 
 class CoilSprings(NamedTuple):
-    """Each of two springs of free length L across the motion; arrays of one shape, SI units.
+    """Each of two springs of length L across the motion; arrays of one shape, SI units.
 
     Attributes
     ----------
-    length, stiffness, extension, pretension, force : ndarray
-        L [m], k_s [N/m], extension at the stroke [m], tension at the middle and at the stroke [N].
+    length, free, stiffness, extension, pretension, force : ndarray
+        L in the middle and without tension [m], k_s [N/m], extension by the stroke [m], tension in the middle and at
+        the stroke [N].
     wire, coils, solid : ndarray
         Diameter of the wire [m], active coils [-], and length with all coils touching [m].
     """
 
     length: Floats
+    free: Floats
     stiffness: Floats
     extension: Floats
     pretension: Floats
@@ -41,7 +43,7 @@ class CoilSprings(NamedTuple):
 def coil_springs(
     k1: ArrayLike, k3: ArrayLike, stroke: ArrayLike, room: float | None = None, stress: float | None = None
 ) -> CoilSprings:
-    """Two springs across the motion with k3 = k_s/L^2 and k1 = 2 T0/L.
+    """Two springs across the motion with k1 = 2 T0/L and k3 = (k_s - T0/L)/L^2.
 
     Parameters
     ----------
@@ -57,10 +59,11 @@ def coil_springs(
     """
     k1, k3, stroke = (np.asarray(value, dtype=float) for value in (k1, k3, stroke))
     length = np.asarray(stroke / MOST_SPRING_STROKE if room is None else np.full(stroke.shape, room))
-    stiffness = k3 * length**2
-    extension = np.hypot(length, stroke) - length
     pretension = 0.5 * k1 * length
+    stiffness = k3 * length**2 + 0.5 * k1
+    free = length - pretension / np.maximum(stiffness, 1e-300)
+    extension = np.hypot(length, stroke) - length
     force = stiffness * extension + pretension
     wire = np.sqrt(8 * force * SPRING_INDEX * _WAHL / (math.pi * (ALLOWED_SHEAR if stress is None else stress)))
     coils = SHEAR_MODULUS * wire / (8 * SPRING_INDEX**3 * np.maximum(stiffness, 1e-300))
-    return CoilSprings(length, stiffness, extension, pretension, force, wire, coils, (coils + _END_COILS) * wire)
+    return CoilSprings(length, free, stiffness, extension, pretension, force, wire, coils, (coils + _END_COILS) * wire)

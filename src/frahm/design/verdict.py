@@ -42,10 +42,10 @@ def _given(scatter: Scatter) -> str:
 
 
 def _best(by_name: dict[str, Rival], scatter: Scatter, objective: Objective) -> str:
-    order = sorted(by_name.values(), key=lambda rival: rival.value)
+    order = sorted(by_name.values(), key=lambda rival: (not rival.verified, rival.value))
     first, none = order[0], by_name.get("none")
     tuned, mixed = by_name.get("tuned mass damper"), by_name.get("mixed")
-    if tuned and mixed and tuned.value <= (1 + _ALIKE) * mixed.value:
+    if tuned and first is mixed and tuned.verified and tuned.value <= (1 + _ALIKE) * mixed.value:
         first = tuned
     unit = objective.unit_text.rstrip()
     text = (

@@ -19,7 +19,7 @@ def test_transverse_springs_are_softer_than_cubic_by_the_printed_ratios():
 def test_the_springs_of_the_sheet_have_the_force_of_the_law_that_is_verified():
     stroke = 0.0133
     sheet = hardware(CASE, SINK, stroke, 4.87)
-    k, L = sheet.value("spring stiffness k_s, each side"), sheet.value("spring free length L, each side")
+    k, L = sheet.value("spring stiffness k_s, each side"), sheet.value("spring length L in the middle, each side")
     y = np.linspace(-stroke, stroke, 41)
     exact = 2 * k * y * (1 - L / np.hypot(L, y))
     law = frahm.build_system(as_built(CASE, SINK, stroke)).elements[0].law
@@ -59,3 +59,31 @@ def test_the_law_that_is_verified_stays_a_hardening_spring_beyond_the_stroke():
     y = np.linspace(1e-4, 1.0, 400)
     assert np.all(law.stiffness(y) > 0)
     assert np.all(np.diff(law.stiffness(y)) > 0)
+
+
+def test_springs_with_pretension_have_both_parts_of_the_law_and_a_free_length():
+    """The exact force of the sheet's springs, tension and all, against the law that was designed."""
+    design, stroke = DesignedAbsorber(0.02, 0.4, 20.0, 0.03), 0.03
+    sheet = hardware(CASE, design, stroke, 4.9)
+    k, L = sheet.value("spring stiffness k_s, each side"), sheet.value("spring length L in the middle, each side")
+    T0, free = sheet.value("pretension for the linear part"), sheet.value("spring free length, each side")
+    assert k * (L - free) == pytest.approx(T0)
+    z = np.linspace(-1e-3, 1e-3, 21)
+    q = np.hypot(L, z)
+    exact = 2 * z / q * (k * (q - free))
+    assert exact == pytest.approx(247 * (0.4 * z + 20.0 * z**3), rel=1e-4)
+    law = frahm.build_system(as_built(CASE, design, stroke)).elements[0].law
+    far = np.linspace(-stroke, stroke, 21)
+    q = np.hypot(L, far)
+    assert law.force(far) == pytest.approx(2 * far / q * k * (q - free), rel=2e-4, abs=1e-12)
+
+
+def test_what_a_design_leaves_out_of_the_case_is_said_and_the_springs_are_judged_without_it():
+    absorber = CASE.to_dict()["absorbers"][0] | {"stops": {"gap": 0.02, "stiffness": 5000.0}, "gravity": 9.81}
+    case = frahm.load_case(CASE.to_dict() | {"absorbers": [absorber]})
+    built = as_built(case, SINK, 0.0133)
+    assert built.absorbers[0].stops is None
+    assert built.absorbers[0].gravity == 0
+    warnings = " ".join(hardware(case, SINK, 0.0133, 4.87).warnings)
+    assert "gap of 0.02 m limits the stroke" in warnings
+    assert "gravity" in warnings
