@@ -12,6 +12,7 @@ from frahm.errors import ParameterError
 from frahm.web import words
 from frahm.web.controls import DETUNING, controls_of, field_texts, reading, spans, with_sink
 from frahm.web.figures import linear_lines, manifold_part, map_part, slow_part
+from frahm.web.layout import heading
 from frahm.web.scope import has_slow_flow, shedding_detuning
 from frahm.web.sessions import Sessions
 from frahm.web.tuned import bare_response, tuned_mass_damper_response
@@ -52,7 +53,7 @@ def _drawn(case: Case, detuning: float, tuned: bool) -> dict[str, Any]:
         part["lines"] += linear_lines("tuned", tuned_mass_damper_response(case))
     shedding = shedding_detuning(case)
     return {
-        "problems": {}, "slow": slow, "key": case.digest, "part": part, "status": status,
+        "problems": {}, "slow": slow, "key": case.digest, "part": part, "status": status, "heading": heading(case),
         "detuning": detuning, "wind": shedding if abs(shedding) < 1e300 else None, "window": case.analysis.detuning,
     }  # fmt: skip
 
@@ -64,7 +65,8 @@ def beside(wanted: Mapping[str, Any]) -> dict[str, Any]:
         return {}
     case, plane = read.case, wanted["plane"]
     span = spans(case)[plane]
-    key = f"{plane} {span.low} {span.high} {with_sink(case, plane, span.low).digest}"
+    same = with_sink(case, plane, span.low).with_name(case.name, "")  # the map does not depend on these
+    key = f"{plane} {span.low} {span.high} {same.digest}"
     manifold, lines = manifold_part(case, read.detuning)
     answer = {
         "manifold": manifold, "status": words.manifold_status(lines), "key": key,

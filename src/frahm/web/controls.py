@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from frahm.case import Case, CubicLaw, Pipe, PolynomialLaw, Tube, field_table
+from frahm.case.quantities import Label
 from frahm.errors import ParameterError, check_number
 from frahm.units import si_value
 
@@ -235,6 +237,9 @@ def _pipe_controls(case: Case) -> tuple[Control, ...]:
 
 
 DETUNING = "detuning"
+_SAME = 1e-12  # relative difference of two numbers that are the same but for rounding
+_LONGEST = Label().longest  # a title
+_CHANGED = re.compile(r"\s*\(changed: ([^()]*)\)$")
 
 
 @dataclass(frozen=True)
@@ -244,7 +249,7 @@ class Reading:
     Attributes
     ----------
     case : Case
-        The case with every value that could be read.
+        The case with every value that could be read; its title names those that differ from what was opened.
     detuning : float
         Where the motion is looked at [rad/s].
     problems : dict
@@ -256,17 +261,36 @@ class Reading:
     problems: dict[str, str]
 
 
+def changed_title(title: str, names: Iterable[str]) -> str:
+    """Title that says which values are not those it was given for; names it holds already are not said twice."""
+    found = _CHANGED.search(title)
+    before = found[1].split(", ") if found else []
+    listed = _at_most(", ".join(dict.fromkeys([*before, *names])), _LONGEST // 2)
+    changes = f" (changed: {listed})"
+    return (_at_most(_CHANGED.sub("", title), _LONGEST - len(changes)) + changes).strip()
+
+
+def _at_most(text: str, length: int) -> str:
+    return text if len(text) <= length else text[: length - 1] + "…"
+
+
 def reading(base: Case, texts: Mapping[str, Any]) -> Reading:
     """Apply the texts of the fields to a case; a field that still shows the value of the case leaves it untouched."""
-    case, problems = base, {}
+    case, changed, problems = base, [], {}
     for control in controls_of(base):
-        text = str(texts.get(control.name, "")).strip()
-        if text == shown(control.value(base)):
+        text, value = str(texts.get(control.name, "")).strip(), control.value(base)
+        if text == shown(value):
             continue
         try:
-            case = control.changed(case, text)
+            other = control.changed(case, text)
         except ParameterError as error:
             problems[control.name] = str(error)
+            continue
+        if not math.isclose(control.value(other), value, rel_tol=_SAME):
+            case = other
+            changed.append(control.name)
+    if changed:
+        case = case.with_name(base.name, changed_title(base.title, changed))
     detuning = math.nan
     try:
         number = read_number(str(texts.get(DETUNING, "")).strip(), "rad/s", DETUNING)

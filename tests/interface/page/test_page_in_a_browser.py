@@ -235,7 +235,9 @@ def test_a_case_is_saved_loaded_and_refused(visit, tmp_path):
         visitor.page.locator("#save").click()
     file = tmp_path / saved.value.suggested_filename
     saved.value.save_as(file)
-    assert frahm.load_case(file).digest == CASE.with_absorber(kappa=222.5).digest
+    title = f"{CASE.title} (changed: kappa)"  # it is the case of the paper no more
+    assert frahm.load_case(file).digest == CASE.with_absorber(kappa=222.5).with_name(CASE.name, title).digest
+    assert wait_until(lambda: visitor.text("case-name") == f"{CASE.name}: {title}")
     with visitor.page.expect_download() as saved:
         visitor.page.locator("#save-curve").click()
     rows = [line for line in saved.value.path().read_text(encoding="utf-8").splitlines() if line[0] != "#"]
@@ -249,8 +251,10 @@ def test_a_case_is_saved_loaded_and_refused(visit, tmp_path):
     expect(visitor.page.locator("#notice")).to_contain_text("typo.yaml:")
     visitor.page.get_by_role("button", name="Fig. 6", exact=True).click()
     expect(visitor.field("kappa")).to_have_value("24.425")
+    expect(visitor.page.locator("#case-name")).not_to_contain_text("changed")
     upload.set_input_files(file)
     expect(visitor.field("kappa")).to_have_value("222.5")
+    expect(visitor.page.locator("#case-name")).to_contain_text("(changed: kappa)")
 
 
 def test_the_tuned_mass_damper_is_drawn_on_demand(visit):
@@ -428,6 +432,9 @@ def test_the_way_of_a_newcomer(visit, tmp_path):
     text = saved.value.path().read_text(encoding="utf-8")
     assert "<html" in text
     assert mine.digest in text
+    assert mine.title == f"{CASE.title} (changed: kappa)"
+    heading = re.search(r"<h1[^>]*>(.*?)</h1>", text, re.DOTALL)[1]
+    assert "(changed: kappa)" in heading
     verdict = visitor.text("job-status").removeprefix("The report was saved by the browser. ")
     assert verdict == analyse(mine).verdict
 

@@ -1,10 +1,12 @@
 """What the fields say, what the figures draw, and what the competitor does: without a browser."""
 
+import json
+
 import numpy as np
 import pytest
 
 import frahm
-from frahm.web import words
+from frahm.web import answers, words
 from frahm.web.controls import DETUNING, controls_of, field_texts, reading, spans
 from frahm.web.drawing import MOST_POINTS, curve_lines
 from frahm.web.jobs import attractors, exact_response, motion
@@ -20,6 +22,11 @@ TEXTS = field_texts(CASE, 0.1)
 
 def silent(*step):
     pass
+
+
+def changed(case, *names):
+    """The case with a title that names what is not as it was opened."""
+    return case.with_name(case.name, f"{CASE.title} (changed: {', '.join(names)})")
 
 
 def test_untouched_fields_leave_the_case_as_it_is():
@@ -43,7 +50,32 @@ def test_untouched_fields_leave_the_case_as_it_is():
 def test_fields_read_numbers_and_text_with_units(name, text, expected):
     found = reading(CASE, TEXTS | {name: text})
     assert found.problems == {}
-    assert found.case.digest == expected.digest
+    assert found.case.digest == changed(expected, name).digest
+
+
+def test_the_title_names_what_was_changed():
+    one = reading(CASE, TEXTS | {"kappa": "250.5"}).case
+    both = reading(one, field_texts(one, 0.0) | {"xi2": "0.01", "kappa": "260"}).case
+    assert both.title == f"{CASE.title} (changed: kappa, xi2)"
+    assert both.name == CASE.name
+    same = reading(CASE, TEXTS | {"wind.speed": TEXTS["wind.speed"] + " m/s", "rho2": "2 %"})
+    assert same.case.digest == CASE.digest
+    untitled = reading(CASE.with_name("mine", ""), TEXTS | {"wind.speed": "0.7", "xi2": "0.01"}).case
+    assert untitled.title == "(changed: xi2, wind.speed)"
+    long = reading(CASE.with_name("mine", 200 * "a"), TEXTS | {"wind.speed": "0.7"}).case
+    assert long.title.endswith("a… (changed: wind.speed)")
+    assert len(long.title) == 200
+
+
+def test_the_page_and_its_map_follow_a_change_of_title_only_as_far_as_they_must():
+    def asked(kappa, answer):
+        values = TEXTS | {"kappa": kappa}
+        wanted = {"case": json.dumps(CASE.to_dict()), "values": values, "tuned": False, "plane": "kappa", "drawn": ""}
+        return answer(wanted)
+
+    assert asked(TEXTS["kappa"], answers.response)["heading"] == f"{CASE.name}: {CASE.title}"
+    assert asked("260", answers.response)["heading"] == f"{CASE.name}: {CASE.title} (changed: kappa)"
+    assert asked("260", answers.beside)["key"] == asked(TEXTS["kappa"], answers.beside)["key"]
 
 
 @pytest.mark.parametrize(

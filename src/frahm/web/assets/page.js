@@ -64,6 +64,7 @@
     const elsewhere = other || answer.detuning !== state.detuning;
     const first = state.key === null;
     Object.assign(state, { key: answer.key, detuning: answer.detuning });
+    entitle(answer.heading);
     if (state.slow !== answer.slow) arrange(answer.slow);
     if (elsewhere) page.forgetMotion();
     page.showResponse(answer, () => { window.frahmDrawn = number; });
@@ -75,6 +76,11 @@
     besides();
     clearTimeout(rest);
     if (number === state.number && !page.hasExact()) rest = setTimeout(settle, REST);
+  }
+
+  function entitle(heading) { // a changed value is not what the title was given for
+    const place = document.getElementById("case-name");
+    if (place.textContent !== heading) set("case-name", { children: heading });
   }
 
   function arrange(slow) {
