@@ -19,7 +19,7 @@ from frahm.web.front import HEAD
 from frahm.web.layout import STYLE, heading, page
 from frahm.web.looks import figures
 from frahm.web.presets import PRESETS
-from frahm.web.scope import PLANES, check_shown, has_slow_flow, start_detuning
+from frahm.web.scope import PLANES, check_shown, has_slow_flow, shedding_detuning, start_detuning
 from frahm.web.sessions import Job, Session, Sessions
 
 _INDEX = """{%metas%}<title>{%title%}</title>{%favicon%}{%css%}STYLE
@@ -189,8 +189,8 @@ def _add_files(app: Dash, sessions: Sessions) -> None:
             if ctx.triggered_id == "load":
                 chosen = _uploaded(contents, filename)
             elif ctx.triggered_id == "to-wind":
-                at = start_detuning(_read(values, case).case)
-                return no_update, no_update, {DETUNING: shown(at)}, no_update, ""
+                texts, notice = _to_wind(_read(values, case).case)
+                return no_update, no_update, texts, no_update, notice
             else:
                 preset = next(one for one in PRESETS if one.figure == ctx.triggered_id["preset"])
                 chosen = preset.case()
@@ -216,6 +216,14 @@ def _add_files(app: Dash, sessions: Sessions) -> None:
         if ctx.triggered_id == "save":
             return dcc.send_string(read.case.to_yaml(), f"{stem}.yaml"), ""
         return _saved_curve(read.case, stem, sessions.of(session_name))
+
+
+def _to_wind(case: Case) -> tuple[Any, str]:
+    """Text of the field of the detuning; or none and a notice, if the wind sheds outside the window."""
+    at, (lo, hi) = shedding_detuning(case), case.analysis.detuning
+    if lo <= at <= hi:
+        return {DETUNING: shown(at)}, ""
+    return no_update, words.wind_outside(at, lo, hi)
 
 
 def _saved_curve(case: Case, stem: str, session: Session) -> tuple[Any, str]:

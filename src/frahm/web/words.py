@@ -58,6 +58,14 @@ def exact_status(found: dict[str, Any]) -> str:
     return text + _doubts(found["unverified"])
 
 
+def wind_outside(detuning: float, low: float, high: float) -> str:
+    """Why the detuning [rad/s] is not set to that of the wind."""
+    return (
+        f"The wind sheds at detuning {detuning:.3g} rad/s, outside the window {low:g} ... {high:g} rad/s: "
+        "the detuning stays as it is."
+    )
+
+
 def manifold_status(lines: ManifoldLines) -> str:
     """Folds of the slow manifold and the ceiling they set."""
     if lines.folds is None:

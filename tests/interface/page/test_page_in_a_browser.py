@@ -10,6 +10,7 @@ from playwright.sync_api import expect
 
 import frahm
 from frahm.analysis import analyse
+from frahm.loads import vortex_shedding
 
 CASE = frahm.load_case("jacket-pipe")
 CHANGES = {
@@ -148,6 +149,24 @@ def test_bad_entries_are_explained_beside_the_field(visit):
     expect(visitor.page.locator("#problem-xi2")).to_be_empty()
     expect(visitor.field("xi2")).not_to_have_attribute("aria-invalid", "true")
     assert wait_until(lambda: shows(visitor, CASE.with_pipe(frequency="0.78 Hz").with_absorber(xi2=0.0117)))
+
+
+def test_a_wind_that_sheds_outside_the_window_is_said_and_not_clamped(visit):
+    visitor = visit().rest()
+    visitor.field("detuning").fill("0.2")
+    visitor.field("wind-speed").fill("5")
+    visitor.page.locator("#to-wind").click()
+    at = vortex_shedding(CASE.with_wind(speed=5.0)).detuning
+    assert at == pytest.approx(4.38, abs=0.005)
+    expect(visitor.page.locator("#notice")).to_contain_text(
+        "The wind sheds at detuning 4.38 rad/s, outside the window -0.4 ... 0.4 rad/s"
+    )
+    assert visitor.field("detuning").input_value() == "0.2"
+    visitor.field("wind-speed").fill(f"{CASE.wind.speed}")
+    visitor.page.locator("#to-wind").click()
+    expect(visitor.page.locator("#notice")).to_be_empty()
+    at = vortex_shedding(CASE).detuning
+    expect(visitor.field("detuning")).to_have_value(f"{at:.6g}")
 
 
 def test_two_visitors_do_not_mix(visit):
