@@ -168,7 +168,7 @@ def _concluded(work: Work, interrupted: bool) -> Analysis:
     failed = sum(check.status == FAIL for check in done.checks)
     doubts = len(done.unverified) + sum(check.status == UNVERIFIED for check in done.checks)
     results["verdict"] = verdict(results, failed, doubts)
-    results["provenance"] = _provenance(work.case)
+    results["provenance"] = provenance(work.case)
     return Analysis(
         case=work.case,
         results=results,
@@ -180,7 +180,8 @@ def _concluded(work: Work, interrupted: bool) -> Analysis:
     )
 
 
-def _provenance(case: Case) -> dict[str, Any]:
+def provenance(case: Case) -> dict[str, Any]:
+    """Digest of a case, its defaulted fields, versions and tolerances."""
     packages = ("numpy", "scipy", "numba", "xarray")
     return {
         "digest": case.digest,

@@ -5,7 +5,7 @@ from frahm.design.designing import check_design, design_absorber, verified_desig
 from frahm.design.objective import Objective
 from frahm.design.pareto import pareto_front
 from frahm.design.settings import DesignSettings
-from frahm.design.store import save_design
+from frahm.design.store import design_summary, save_design
 from frahm.design.study import DesignStudy, Rival
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "Rival",
     "check_design",
     "design_absorber",
+    "design_summary",
     "parameters_text",
     "pareto_front",
     "save_design",

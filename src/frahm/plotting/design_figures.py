@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm.exchange import write_data
+from frahm.plotting.static import response_figure
 from frahm.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, VERMILLION, figure_style, new_figure, save_figure
 
 if TYPE_CHECKING:
@@ -23,16 +25,38 @@ _LOOKS = {
 _LABELS = {"none": "no absorber", "case": "the case's own", "mixed": "linear and cubic"}
 
 
-def save_design_figures(data: xr.Dataset, folder: str | Path) -> list[Path]:
-    """Draw what the dataset of a design study holds into an existing folder, as PNG and SVG; return the paths."""
+def save_design_figures(data: xr.Dataset, folder: str | Path, curve: xr.Dataset) -> list[Path]:
+    """Draw what the dataset of a design study holds into an existing folder, as PNG and SVG, with CSV; return paths.
+
+    `curve` is the exact response with the chosen design.
+    """
+    drawings = [
+        ("design-comparison", "rival", lambda: comparison_figure(data)),
+        ("design-response", "point", lambda: response_figure(curve, "pipe_peak", [], None, None, None)),
+    ]
+    if data.sizes["device"]:
+        drawings.append(("design-frequency-errors", "error_index", lambda: frequency_error_figure(data)))
+    if data.sizes["margin_index"]:
+        drawings.append(("design-margin", "margin_index", lambda: margin_figure(data)))
     paths = []
     with figure_style():
-        paths += save_figure(comparison_figure(data), Path(folder) / "design-comparison")
-        if data.sizes["device"]:
-            paths += save_figure(frequency_error_figure(data), Path(folder) / "design-frequency-errors")
-        if data.sizes["margin_index"]:
-            paths += save_figure(margin_figure(data), Path(folder) / "design-margin")
+        for name, _, draw in drawings:
+            paths += save_figure(draw(), Path(folder) / name)
+    for name, dimension, _ in drawings:
+        paths += write_data(_shown(curve if dimension == "point" else data, dimension), Path(folder) / f"{name}.csv")
     return paths
+
+
+def _shown(data: xr.Dataset, dimension: str) -> xr.Dataset:
+    """The variables along one dimension; a device each where there are several."""
+    kept = data[[name for name in data if data[name].dims == (dimension,)]]
+    if dimension == "error_index":
+        names = data["error_pipe_peak"].attrs["names"].split(", ")
+        for row, name in enumerate(names):
+            kept[name.replace(" ", "_").replace("-", "_")] = data["error_pipe_peak"][row].drop_attrs().assign_attrs(
+                units="m", long_name=f"largest pipe peak with device: {_LABELS.get(name, name)}"
+            )  # fmt: skip
+    return kept
 
 
 def comparison_figure(data: xr.Dataset) -> Figure:

@@ -8,14 +8,16 @@ from typing import Any
 
 import jinja2
 
+from frahm.analysis import defaulted_fields, provenance
 from frahm.case import Design, field_table, field_values
-from frahm.design import DesignStudy, Objective, Rival
+from frahm.design import DesignStudy, Objective, Rival, design_summary
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.loads import vortex_shedding
 from frahm.plotting.design_figures import save_design_figures
 from frahm.report.report import REPORT_FILE, image_address
-from frahm.report.tables import number
+from frahm.report.tables import input_rows, number
+from frahm.response import frequency_response
 
 _NAMES = {"none": "no absorber", "case": "the case's own", "mixed": "linear and cubic"}
 
@@ -33,7 +35,8 @@ def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
         figures.mkdir(exist_ok=True)
     except OSError as error:
         raise ParameterError("DIR", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
-    drawn = save_design_figures(study.to_dataset(), figures)
+    curve = frequency_response(study.best_case, detuning=study.case.analysis.detuning).to_dataset()
+    drawn = save_design_figures(study.to_dataset(), figures, curve)
     images = {file.stem: image_address(file.read_text(encoding="utf-8")) for file in drawn if file.suffix == ".svg"}
     write_text(path, render_design_report(study, images))
     return path
@@ -65,8 +68,32 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         objective_title=_titled(objective),
         least_stroke=least_stroke(study),
         plots={},
+        inputs=input_rows(study.case, defaulted_fields(study.case)),
+        checks=check_rows(study),
+        provenance=provenance_rows(study),
+        missed=missed_below(study),
         images=images,
     )  # fmt: skip
+
+
+def check_rows(study: DesignStudy) -> list[tuple[str, str, str]]:
+    """Check, outcome, detail."""
+    marks = {"pass": "✓ pass", "unverified": "? unverified"}
+    return [(check["name"], marks[check["status"]], check["detail"]) for check in design_summary(study)["checks"]]
+
+
+def provenance_rows(study: DesignStudy) -> list[tuple[str, str]]:
+    """Versions, seed and tolerances."""
+    known = provenance(study.case)
+    rows = [("frahm", study.version), *known["versions"].items()]
+    rows += [("Seed of the sampled initial states", str(study.settings.seed))]
+    tolerances = ("harmonic_balance_residual", "integration_tolerance")
+    return rows + [(name.replace("_", " "), number(known["settings"][name])) for name in tolerances]
+
+
+def missed_below(study: DesignStudy) -> str:
+    """Basin that the sample misses at a frequency with a chance of 5 % [%]."""
+    return f"{100 * (1 - 0.05 ** (1 / study.settings.samples)):.2g}"
 
 
 def least_stroke(study: DesignStudy) -> str:
