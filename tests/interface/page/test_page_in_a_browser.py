@@ -194,7 +194,7 @@ def test_a_click_on_the_curve_shows_the_motion_there(visit):
     expect(visitor.page.locator("#motion-status")).to_contain_text("periodic; at the end the pipe peaks at")
     peak = float(re.search(r"pipe peaks at ([\d.e-]+) m", visitor.text("motion-status"))[1])
     assert peak == pytest.approx(curve.pipe_peak[index], rel=1e-3)
-    assert float(visitor.field("detuning").input_value()) == curve.detuning[index]
+    assert visitor.field("detuning").input_value() == f"{curve.detuning[index]:.6g}"
     assert wait_until(lambda: len(visitor.lines("motion")) >= 6)
     assert max(len(trace["x"]) for trace in visitor.lines("motion")) <= 2000
 
@@ -205,6 +205,22 @@ def test_a_click_on_the_curve_shows_the_motion_there(visit):
     assert on_the_manifold()[0][-1] == pytest.approx(curve.pipe_amplitude[index], rel=1e-3)
     visitor.field("kappa").fill("300")  # the motion of other values leaves the manifold
     assert wait_until(lambda: not on_the_manifold())
+
+
+def test_the_motion_of_a_click_is_at_the_detuning_that_the_field_shows(visit):
+    visitor = visit().rest()
+    asked = []
+    visitor.page.on("request", lambda request: asked.append(request.post_data or ""))
+    for x, text in ((-0.10000000000000003, "-0.1"), (0.1234567890123, "0.123457"), (1e-17, "0"), (-0.4, "-0.4")):
+        visitor.page.evaluate(
+            """(x) => { const gd = document.querySelector('#response .js-plotly-plot');
+              gd.emit('plotly_click', {points: [{curveNumber: 1, x, y: 0.01, pointNumber: 0, data: gd.data[1]}]}); }""",
+            x,
+        )
+        expect(visitor.field("detuning")).to_have_value(text)
+        expect(visitor.page.locator("#motion-status")).to_contain_text(f"At σ = {float(text):.4g} rad/s")
+        clicked = re.findall(r'"detuning":([^,]+),"near"', "".join(asked))
+        assert float(clicked[-1]) == float(text)
 
 
 def test_attractors_are_searched_and_marked(visit):

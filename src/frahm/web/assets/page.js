@@ -63,7 +63,7 @@
     const other = answer.key !== state.key;
     const elsewhere = other || answer.detuning !== state.detuning;
     const first = state.key === null;
-    Object.assign(state, { key: answer.key, detuning: answer.detuning });
+    Object.assign(state, { key: answer.key, detuning: answer.detuning, window: answer.window });
     entitle(answer.heading);
     if (state.slow !== answer.slow) arrange(answer.slow);
     if (elsewhere) page.forgetMotion();
@@ -166,11 +166,18 @@
   const marked = (lines) => { if (lines) page.showMarks(lines); };
   const moved = (drawing) => { if (drawing) page.showMotion(drawing); };
 
+  // A detuning as a field shows it: without the rounding of the curve, unless that takes it out of the window.
+  function rounded(x) {
+    const short = Number(Number(x.toFixed(9)).toPrecision(6));
+    return short >= state.window[0] && short <= state.window[1] ? short : x;
+  }
+
   page.clicked = function (x, y, second) {
-    page.place("detuning", String(x));
+    const at = rounded(x);
+    page.place("detuning", String(at));
     hand();
     want();
-    set("clicked", { data: { detuning: x, near: second ? [null, y] : [y, null], at: Date.now() } });
+    set("clicked", { data: { detuning: at, near: second ? [null, y] : [y, null], at: Date.now() } });
   };
 
   page.mapped = function (x, y) {
