@@ -37,6 +37,7 @@ _MOST_POINTS = 6000
 _LONGEST = 0.02
 _SEED_FREQUENCIES = 17
 _QUICK = 0.2  # way of a multiplier near the unit circle from point to point that asks for a point between
+_BEYOND = 12  # windows beyond the upper edge in which branches that leave it are followed
 _GRID = 401
 _SHORT_RANGE, _AROUND = 16, 9  # points of the grid in a short range of three roots; frequencies looked at around it
 _STRONG_FREQUENCIES = 9
@@ -207,7 +208,9 @@ def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
         tracks += _buckled_branches(search, about_others, tracks)
     for track in tracks:
         _join(search, track, tracks)
-    return sorted(tracks, key=lambda track: _response_at(track, search.lo))
+    tracks = sorted(tracks, key=lambda track: _response_at(track, search.lo))
+    _join_beyond(search, tracks)
+    return tracks
 
 
 def _buckled_branches(search: Search, seeds: list[Seed], known: list[Track]) -> list[Track]:
@@ -266,6 +269,28 @@ def _join(search: Search, track: Track, tracks: list[Track]) -> None:
             track.meets.append(other)
             other.meets.append(track)
             track.events[i] = replace(event, kind="branch-point")
+
+
+def _join_beyond(search: Search, tracks: list[Track]) -> None:
+    """Tell the branches that seem apart because the window cuts off where they hang together.
+
+    Those that leave the window are followed much further, and meet the others whose points they come to.
+    """
+    hanging = connected(tracks)
+    width = search.hi - search.lo
+    far = replace(search, outer=(0.02 * search.lo, search.hi + _BEYOND * width))
+    for track in tracks:
+        if track.closed or track.parent is not None or any(track is other for other in hanging):
+            continue
+        inside = np.flatnonzero((track.frequency >= search.lo) & (track.frequency <= search.hi))
+        start = int(inside[len(inside) // 2])
+        whole = _followed(far, track.odd, track.ys[start].copy(), int(track.Hs[start]))
+        for other in hanging:
+            at = int(np.argmin(np.abs(other.frequency - 0.5 * (search.lo + search.hi))))
+            if other.odd == track.odd and _lies_on(search, whole, other.ys[at].copy(), int(other.Hs[at])):
+                track.meets.append(other)
+                other.meets.append(track)
+                break
 
 
 def _passes(search: Search, track: Track, point: Point) -> bool:

@@ -77,3 +77,28 @@ def test_a_sink_anywhere_on_an_elastic_pipe_does_not_look_as_if_it_had_two_wells
     for factor, there in ((0.99, False), (1.02, True)):
         curve = frahm.frequency_response(with_parameters(system, force=factor * births[0]), frequency=window)
         assert any(curve.detached) == there
+
+
+def test_a_branch_cut_off_by_the_window_is_not_called_detached():
+    """With little damping the low response on the right hangs together with the rest far beyond the window."""
+    case = CASE.with_absorber(xi2=0.0005)
+    narrow, wide = (frahm.frequency_response(case, detuning=window) for window in ((-0.4, 0.4), (-2.0, 4.0)))
+    assert wide.detached[0] is False
+    low = [b for b in narrow.branches if b.detuning.min() > 0.05 and b.detuning.max() > 0.399]
+    assert len(low) == 1
+    assert not low[0].detached
+    assert sum(narrow.detached) == sum(wide.detached) == 2  # the others are apart in both
+
+
+def crossings(branch, sigma):
+    """Pipe peaks of a branch where it passes a detuning."""
+    d, peak = branch.detuning - sigma, branch.pipe_peak
+    return [peak[i] - d[i] * (peak[i + 1] - peak[i]) / (d[i + 1] - d[i]) for i in np.flatnonzero(d[:-1] * d[1:] < 0)]
+
+
+def test_the_part_cut_off_is_the_first_branch_of_the_wide_window():
+    case = CASE.with_absorber(xi2=0.0005)
+    narrow, wide = (frahm.frequency_response(case, detuning=window) for window in ((-0.4, 0.4), (-2.0, 4.0)))
+    (low,) = (b for b in narrow.branches if b.detuning.min() > 0.05 and b.detuning.max() > 0.399)
+    (peak,) = crossings(low, 0.2)[:1]
+    assert any(other == pytest.approx(peak, rel=0.02) for other in crossings(wide.branches[0], 0.2))
