@@ -169,6 +169,37 @@ def test_a_wind_that_sheds_outside_the_window_is_said_and_not_clamped(visit):
     expect(visitor.field("detuning")).to_have_value(f"{at:.6g}")
 
 
+def test_an_answer_that_is_overdue_is_said_and_what_is_drawn_pales(visit):
+    visitor, held = visit().rest(), []
+    response, status = visitor.page.locator("#response"), visitor.page.locator("#slow-status")
+    pale = re.compile(r"\bstale\b")
+    expect(response).not_to_have_class(pale)
+    before = visitor.lines()
+    visitor.page.route(
+        "**/drawn/response", lambda route: held.append(route)
+    )  # as long as a curve without damping may take
+    visitor.field("xi2").fill("0")
+    expect(status).to_contain_text("Computing … What is drawn, in a paler tint, is of the last values.")
+    for name in ("response", "map", "manifold"):
+        expect(visitor.page.locator(f"#{name}")).to_have_class(pale)
+    assert visitor.lines() == before
+    while held:
+        held.pop().continue_()
+    visitor.page.unroute("**/drawn/response")
+    expect(status).to_contain_text("Slow flow:")
+    for name in ("response", "map", "manifold"):
+        expect(visitor.page.locator(f"#{name}")).not_to_have_class(pale)
+    assert wait_until(lambda: shows(visitor, CASE.with_absorber(xi2=0)))
+    visitor.page.route("**/drawn/response", lambda route: route.abort())
+    visitor.field("xi2").fill("0.01")
+    expect(status).to_contain_text("No answer came")
+    visitor.page.unroute("**/drawn/response")
+    visitor.faults.clear()  # the browser tells of the request that was cut off
+    visitor.field("xi2").fill("0.02")
+    expect(status).to_contain_text("Slow flow:")
+    assert wait_until(lambda: shows(visitor, CASE.with_absorber(xi2=0.02)))
+
+
 def test_two_visitors_do_not_mix(visit):
     one, two = visit(), visit()
     one.field("kappa").fill("50")

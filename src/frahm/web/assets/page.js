@@ -8,6 +8,7 @@
   const GIVE_UP = 15000; // ms after which a question without an answer no longer holds up the next
   const PAUSE = 150; // ms from one answer about manifold and map to the next question about them, at least
   const SHARE = 6; // times as long as they took to draw is left to the response
+  const LATE = 500; // ms without an answer after which what is drawn is marked as of older values
   const BEAT = 2000; // ms between signs of life
   const state = { case: null, session: null, plane: "kappa", tuned: false, number: 0, key: null, detuning: null, slow: true };
   const set = (id, props) => window.dash_clientside.set_props(id, props);
@@ -15,22 +16,30 @@
   const fade = (id, look) => { const place = document.getElementById(id); if (place && place.className !== look) set(id, { className: look }); };
 
   // One kind of question to the server: one under way at a time, and only the newest waits.
-  function asker(path, wanted, heard) {
-    const own = { sent: -1, turn: 0, since: 0, busy: false };
+  // `late` is told true when an answer is overdue, and false when the newest one, or one in time, has come.
+  function asker(path, wanted, heard, late) {
+    const own = { sent: -1, turn: 0, since: 0, busy: false, overdue: null };
     own.ask = async function () {
       if (own.busy && Date.now() - own.since < GIVE_UP) return;
       const number = state.number;
       const mine = (own.turn += 1);
-      Object.assign(own, { busy: true, sent: number, since: Date.now() });
+      const since = Date.now();
+      Object.assign(own, { busy: true, sent: number, since: since });
+      clearTimeout(own.overdue);
+      if (late) own.overdue = setTimeout(() => late(true), LATE);
       let answer = null;
       try {
         const response = await fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(wanted()) });
         answer = response.ok ? await response.json() : null;
         if (!response.ok) say("slow-status", "This could not be computed: the terminal that runs the page says why.");
-      } catch (error) { answer = null; } // it has ended: the beat says so
+      } catch (error) { // it has ended: the beat says so
+        if (late) say("slow-status", "No answer came: what is drawn is of the last values.");
+      }
       if (own.turn !== mine) return; // given up meanwhile
       own.busy = false;
       if (own.sent !== state.number && answer !== null) own.again();
+      if (late && !own.busy) clearTimeout(own.overdue);
+      if (late && (!own.busy || Date.now() - since < LATE)) late(false);
       if (answer !== null) heard(answer, number);
     };
     own.again = own.ask;
@@ -38,7 +47,7 @@
   }
 
   const values = () => ({ case: state.case, session: state.session, values: page.values() });
-  const drawn = asker("drawn/response", () => Object.assign(values(), { tuned: state.tuned }), answered);
+  const drawn = asker("drawn/response", () => Object.assign(values(), { tuned: state.tuned }), answered, waiting);
   const beside = asker("drawn/beside", () => Object.assign(values(), { plane: state.plane, drawn: beside.key || "" }), answeredBeside);
   beside.again = () => besides();
   const exact = asker("drawn/exact", values, answeredExact);
@@ -76,6 +85,11 @@
     besides();
     clearTimeout(rest);
     if (number === state.number && !page.hasExact()) rest = setTimeout(settle, REST);
+  }
+
+  function waiting(on) {
+    ["response", "map", "manifold"].forEach((id) => document.getElementById(id).classList.toggle("stale", on));
+    if (on) say("slow-status", "Computing …" + (state.key === null ? "" : " What is drawn, in a paler tint, is of the last values."));
   }
 
   function entitle(heading) { // a changed value is not what the title was given for
