@@ -122,7 +122,7 @@ def _add_motion(app: Dash, sessions: Sessions) -> None:
         if job.result is None:
             return no_update, f"No motion: {job.problem}", *[no_update] * 4
         drawn = {"figure": job.result["figure"], "slow": job.result["slow"] if has_slow_flow(read.case) else None}
-        return drawn, words.motion_status(job.result), False, job.result["history"], False, ""
+        return drawn, words.motion_status(read.case, job.result), False, job.result["history"], False, ""
 
 
 def _add_long_jobs(app: Dash, sessions: Sessions) -> None:

@@ -324,14 +324,19 @@ _HINTS = {
 _GREEK = {"omega": "ω", "zeta": "ζ"}
 
 
+def shown_symbol(control: Control) -> str:
+    """Symbol of a control as the page writes it."""
+    return _GREEK.get(control.symbol, control.symbol)
+
+
 def field_facts(case: Case, detuning: float) -> list[dict[str, Any]]:
     """What the script of the page must know to build the fields and sliders, and to turn positions into numbers."""
     texts, ranges = field_texts(case, detuning), spans(case)
-    head = {control.name: (control.title, control.symbol, control.unit) for control in controls_of(case)}
+    head = {control.name: (control.title, shown_symbol(control), control.unit) for control in controls_of(case)}
     head[DETUNING] = ("Detuning", "σ", "rad/s")
     return [
         {
-            "name": name, "key": html_key(name), "title": title, "symbol": _GREEK.get(symbol, symbol),
+            "name": name, "key": html_key(name), "title": title, "symbol": symbol,
             "unit": unit.replace("^2", "²").replace("^3", "³") or "-", "hint": _HINTS.get(name, ""),
             "text": texts[name], "low": ranges[name].low, "high": ranges[name].high,
             "logarithmic": ranges[name].logarithmic, "steps": STEPS,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm.case import Case
-from frahm.web.controls import controls_of
+from frahm.web.controls import Control, controls_of, shown, shown_symbol
 from frahm.web.sessions import Job
 
 if TYPE_CHECKING:  # loaded when the first curve is drawn, not before the page is shown
@@ -73,10 +73,10 @@ def manifold_status(lines: ManifoldLines) -> str:
     return f"A modulated response of the pipe jumps at {_metres(lines.folds.pipe_ceiling)}, the upper fold."
 
 
-def motion_status(found: dict[str, Any]) -> str:
-    """What an integrated motion is."""
+def motion_status(case: Case, found: dict[str, Any]) -> str:
+    """What an integrated motion is, and the values it belongs to."""
     return (
-        f"At σ = {found['detuning']:.4g} rad/s, {found['about']}: {found['kind']}; at the end the pipe peaks at "
+        f"{_values(case, found['detuning'])}, {found['about']}: {found['kind']}; at the end the pipe peaks at "
         f"{_metres(found['pipe_peak'])}, the sink at {_metres(found['relative_peak'])}. {found['outcome']}"
     ).strip()
 
@@ -85,18 +85,28 @@ def attractor_table(case: Case, found: dict[str, Any]) -> html.Div:
     """Attractors with their basin fractions, and the values they belong to."""
     from dash import html
 
-    values = [
-        f"{control.symbol} = {control.value(case):.5g}"
-        for control in controls_of(case)
-        if not control.name.startswith(("wind.", "pipe."))
-    ]
-    about = f"At σ = {found['detuning']:.4g} rad/s, {', '.join(values)}, wind {case.wind.speed:.4g} m/s; "
-    about += f"{found['samples']} starts, seed {found['seed']}:"
+    about = f"{_values(case, found['detuning'])}; {found['samples']} starts, seed {found['seed']}:"
     head = html.Tr([html.Th(text) for text in ("kind", "pipe [m]", "sink [m]", "share of starts (95 %)")])
     rows = [html.Tr(_attractor_cells(row)) for row in found["attractors"]]
     named: dict[str, Any] = {"tabIndex": "0", "role": "region", "aria-label": "attractors found"}
     table = html.Div(html.Table([html.Thead(head), html.Tbody(rows)]), className="table", **named)
     return html.Div([html.P(about, className="status"), table])
+
+
+def _values(case: Case, detuning: float) -> str:
+    """The detuning [rad/s] and every value of the fields, by which what is shown can be told from that of others."""
+    values = [
+        f"{shown_symbol(control)} = {shown(control.value(case))}{_unit(control)}"
+        for control in controls_of(case)
+        if control.name != "wind.speed"
+    ]
+    return f"At σ = {detuning:.4g} rad/s, {', '.join(values)}, wind {shown(case.wind.speed)} m/s"
+
+
+def _unit(control: Control) -> str:
+    """Unit of a value behind its number; the reciprocal ones stand beside the fields alone."""
+    unit = control.unit.replace("^2", "²").replace("^3", "³")
+    return f" {unit}" if unit and not unit.startswith("1/") else ""
 
 
 def _attractor_cells(row: dict[str, Any]) -> list[html.Td]:

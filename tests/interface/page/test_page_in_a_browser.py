@@ -223,6 +223,7 @@ def test_a_click_on_the_curve_shows_the_motion_there(visit):
     )
     expect(visitor.page.locator("#motion-status")).to_contain_text("from the stable periodic response")
     expect(visitor.page.locator("#motion-status")).to_contain_text("periodic; at the end the pipe peaks at")
+    expect(visitor.page.locator("#motion-status")).to_contain_text("κ = 367.38, ξ₂ = 0.0117, ρ₂ = 0.02,")
     peak = float(re.search(r"pipe peaks at ([\d.e-]+) m", visitor.text("motion-status"))[1])
     assert peak == pytest.approx(curve.pipe_peak[index], rel=1e-3)
     assert visitor.field("detuning").input_value() == f"{curve.detuning[index]:.6g}"

@@ -275,6 +275,22 @@ def test_a_motion_starts_where_the_curve_was_clicked():
     assert max(len(trace["x"]) if isinstance(trace["x"], list) else 0 for trace in rest["figure"]["data"]) <= 1000
 
 
+def test_what_is_computed_on_demand_names_the_values_it_belongs_to():
+    case = CASE.with_absorber(kappa=250.5).with_pipe(frequency=4.95).with_wind(speed=2.6)
+    found = motion(case, silent, detuning=-0.144)
+    said = words.motion_status(case, found)
+    values = (
+        "At σ = -0.144 rad/s, κ = 250.5, ξ₂ = 0.0117, ρ₂ = 0.02, ω = 4.95 rad/s, ζ = 0.0015, wind 2.6 m/s, "
+        f"from rest: {found['kind']};"
+    )
+    assert said.startswith(values)
+    table = words.attractor_table(case, {"detuning": -0.144, "samples": 5, "seed": 1, "attractors": []})
+    assert table.children[0].children == f"{values.split(', from rest')[0]}; 5 starts, seed 1:"
+    others = {"elastic": ("s = 31.2 m", "t = 0.0134 m"), "linear": ("k = 110 N/m",), "polynomial": ("c₃ = 90000 N/m³",)}
+    for name, parts in others.items():
+        assert all(part in words.motion_status(OTHERS[name], found) for part in parts), name
+
+
 def test_attractors_are_those_of_the_python_interface():
     case = CASE.with_analysis(samples=40)
     found = attractors(case, silent, detuning=-0.02)
