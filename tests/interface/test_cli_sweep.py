@@ -43,6 +43,12 @@ quantities:
 """
 
 
+def alike(one, other):
+    """Equal but for last digits: a process that compiled the kernels rounds otherwise than one that found them."""
+    xr.testing.assert_allclose(one, other, rtol=1e-6, atol=1e-9)
+    assert one.attrs == other.attrs
+
+
 def run(*arguments):
     return CliRunner().invoke(app, [*map(str, arguments)])
 
@@ -129,7 +135,7 @@ def test_killed_interrupted_and_resumed_a_sweep_is_the_same(folder):
 
     assert run(*command, "--resume").exit_code == 0
     whole = frahm.sweep("long.yaml", store="whole.zarr", batch=173)
-    xr.testing.assert_identical(xr.open_zarr("long.zarr").load(), whole.load())
+    alike(xr.open_zarr("long.zarr").load(), whole.load())
 
 
 def test_progress_is_shown_on_a_terminal_only(folder):
@@ -168,7 +174,7 @@ def test_a_dask_cluster_in_this_process_gives_the_same(folder, local):
         distributed.Client(cluster, set_as_default=False) as client,
     ):
         found = frahm.sweep("s.yaml", store="s", executor=client.get_executor(pure=False), batch=2)
-        xr.testing.assert_identical(found.load(), local)
+        alike(found.load(), local)
 
 
 def test_workers_behind_an_address_give_the_same(folder, local):
@@ -181,4 +187,4 @@ def test_workers_behind_an_address_give_the_same(folder, local):
         assert address.startswith("tcp://127.0.0.1:")
         result = run("sweep", "s.yaml", "--store", "s", "--scheduler", address)
     assert (result.exit_code, result.stderr) == (0, "")
-    xr.testing.assert_identical(xr.open_zarr("s").load(), local)
+    alike(xr.open_zarr("s").load(), local)

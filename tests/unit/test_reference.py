@@ -13,6 +13,8 @@ FUNCTIONS = [name for name in NAMES if not inspect.isclass(getattr(frahm, name))
 CLASSES = [name for name in NAMES if inspect.isclass(getattr(frahm, name))]
 NO_UNITS = {
     "load_case",
+    "load_study",
+    "sweep",
     "read_data",
     "read_table",
     "write_data",
@@ -29,6 +31,8 @@ def section(text, title):
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_function_says_what_goes_in_what_comes_out_and_what_is_refused(name):
     function = getattr(frahm, name)
+    if inspect.ismodule(function):  # a room called like its verb
+        function = getattr(function, name)
     text = inspect.getdoc(function)
     described = section(text, "Parameters")
     heads = [head for line in re.findall(r"^(\S.*?) : ", described, re.MULTILINE) for head in line.split(", ")]
