@@ -83,11 +83,13 @@ def warmup() -> None:
     import time
 
     from frahm.analysis import analyse
+    from frahm.design import DesignSettings, verified_designs
     from frahm.time_integration import unsteady_response
 
     start = time.perf_counter()
     analyse("jacket-pipe")
     unsteady_response("jacket-pipe", record=([0.0, 1.0], [2.7, 2.7]))
+    verified_designs("jacket-pipe", DesignSettings(samples=2), ("tuned", "sink"))
     typer.echo(f"The kernels are compiled and stored; this took {time.perf_counter() - start:.1f} s.")
 
 
