@@ -201,22 +201,23 @@ class _Designing:
             parts.append(f"spring stress {self.limits.stress:g} Pa")
         return ", ".join(parts)
 
-    def _finalists(self, family: str, limits: Limits) -> tuple[list[Finalist], list[str]]:
+    def _finalists(self, family: str, limits: Limits, wary: bool = False) -> tuple[list[Finalist], list[str]]:
         """Finalists of a family under limits, and why others were discarded."""
         problem = self.problem
         tier = problem.tier(family, limits.force_margin)
-        kept, discarded = finalists(tier, self.system_of, problem.windows, problem.disturbances, limits)
+        kept, discarded = finalists(tier, self.system_of, problem.windows, problem.disturbances, limits, wary)
         return kept, [f"{_DEVICES[family]}: {reason}" for reason in discarded]
 
     def designed(self, family: str) -> Rival | None:
         """Best verified design of a family: finalists in the order of what is expected of them."""
         self._step(f"search: {_DEVICES[family]}")
         best = self._cornered(family)
-        for _ in range(_ATTEMPTS):
-            waiting, discarded = self._finalists(family, self.limits)
+        corner = best
+        for attempt in range(_ATTEMPTS):
+            waiting, discarded = self._finalists(family, self.limits, wary=attempt > 0)
             self.found.discarded += discarded
             best, failed = self._tried(family, _apart(waiting)[:_MOST_FINALISTS], best)
-            if not failed:
+            if not failed and (attempt > 0 or best is not corner):
                 break
             # the closed form does not see what is wrong with these: what is best elsewhere is looked for
             for design in failed:

@@ -27,7 +27,7 @@ _SHORT = 1.5e-3  # by which an exact birth may fall short of the margin while th
 _LEAST_DECAY = 4.5e-3  # per period: slower motions do not settle within the periods of the attractor search
 _MISSED = 2e-3  # of the force: a detached curve so near its birth may be too small to be met
 _TRUSTED = (0.95, 1.1)  # ratios of exact to screened peaks beyond these tell of a jump, not of a trend
-_JUMPED = 1.3  # ratio from where on the search goes elsewhere
+_HOPELESS, _JUMPED = 4.0, 1.3  # ratios from where on the neighbourhood of a design is left, the second if wary
 _FAR = 1.1  # of the margin: how far a birth is looked for
 
 
@@ -65,9 +65,13 @@ def finalists(
     windows: Windows,
     disturbances: Sequence[Disturbance],
     limits: Limits,
-    report: Callable[[Finalist], None] = lambda finalist: None,
+    wary: bool = False,
 ) -> tuple[list[Finalist], list[str]]:
-    """Designs that keep the limits by the exact equations, best first, and why others were discarded."""
+    """Designs that keep the limits by the exact equations, best first, and why others were discarded.
+
+    A design whose exact response is far larger than the closed form says is left, with its neighbourhood: by four
+    times, or by a third if `wary`. Either way may find what the other passes by.
+    """
     kept: list[Finalist] = []
     discarded: list[str] = []
     decay = _LEAST_DECAY * tier.screening.host.frequency / (2 * math.pi)
@@ -85,17 +89,17 @@ def finalists(
             judged = tier.judge(row[None])
             finalist, birth = _judged(tier, row, judged, system_of, windows, disturbances, limits, corrections)
             rows = slice(PEAKS, PEAKS + len(tier.screening.conditions.forces))
-            if np.any(np.resize(finalist.exact.peaks, rows.stop - PEAKS) > _JUMPED * judged[0, rows]):
-                tier.avoid(row)  # the exact equations have a branch there that the closed form does not see
+            ratio = float(np.max(np.resize(finalist.exact.peaks, rows.stop - PEAKS) / judged[0, rows]))
+            if ratio > (_JUMPED if wary else _HOPELESS):
+                tier.avoid(row)  # the exact equations have a branch there that no correction lets the closed form see
                 discarded.append(_jump(finalist))
                 continue
             short = limits.force_margin - finalist.force_margin
             lazy = stable and finalist.exact.growth_rate > -0.5 * decay
             wide = finalist.exact.relative_peak > limits.stroke * 1.0005
             wide |= limits.filling(row[None], np.array([finalist.exact.relative_peak]))[0] > 1
-            if short <= 0 and not lazy and not wide and not finalist.exact.detached:
+            if short <= 0 and not (lazy or wide or finalist.exact.detached):
                 kept.append(finalist)
-                report(finalist)
             elif abs(finalist.predicted - last) < _SETTLED * last and short > _SHORT:
                 discarded.append(_reason(finalist, limits))
             if kept and abs(finalist.predicted - last) < _SETTLED * last and short <= 0:
