@@ -174,7 +174,7 @@ def test_a_dask_cluster_in_this_process_gives_the_same(folder, local):
         distributed.Client(cluster, set_as_default=False) as client,
     ):
         found = frahm.sweep("s.yaml", store="s", executor=client.get_executor(pure=False), batch=2)
-        alike(found.load(), local)
+        xr.testing.assert_identical(found.load(), local)
 
 
 def test_workers_behind_an_address_give_the_same(folder, local):

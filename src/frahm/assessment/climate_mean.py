@@ -19,7 +19,6 @@ from frahm.harmonic_balance import is_linear, linear_response
 from frahm.loads import WindClimate, wind_climate, wind_excitation
 from frahm.systems import System
 
-MEASURES = ("damage", "expected")
 _BINS = 40
 _FINE = 4001
 Change = Callable[[System], System]

@@ -60,7 +60,6 @@ class _Found:
     built: Verification | None = None
     built_margin: float = math.nan
     discarded: list[str] = field(default_factory=list)
-    doubts: list[str] = field(default_factory=list)
 
 
 def design_absorber(

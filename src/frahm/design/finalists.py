@@ -53,11 +53,6 @@ class Finalist:
     force_margin: float
     open_ended: bool
 
-    @property
-    def clearly_stable(self) -> bool:
-        """Whether disturbances die out fast enough for every motion to settle."""
-        return self.exact.growth_rate < 0
-
 
 def finalists(
     tier: TierOne,

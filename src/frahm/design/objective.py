@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,10 +62,6 @@ class Objective:
         if self.quantile is None:
             return np.asarray(np.max(values, axis=-1))
         return np.asarray(np.quantile(values, self.quantile, axis=-1, method="higher"))
-
-    def index(self, values: Sequence[float]) -> int:
-        """Which of the disturbances has the value of `over_scatter`."""
-        return int(np.argmin(np.abs(np.asarray(values) - self.over_scatter(np.asarray(values, dtype=float)))))
 
     def of_peaks(self, peaks: Floats, unstable: np.ndarray, ceilings: Floats) -> Floats:
         """Values (N, D) expected of periodic pipe peaks (N, D) [m].
