@@ -6,14 +6,17 @@ from frahm.attractors.finding import find_attractors
 from frahm.attractors.modulated import modulated_response
 from frahm.attractors.modulated_branches import modulated_branches
 from frahm.attractors.modulated_curve import ModulatedCurve
-from frahm.attractors.worst import WorstCase, worst_case
+from frahm.attractors.worst import WorstCase, driven_at, worst_case
+from frahm.attractors.worst_motion import WorstMotion
 
 __all__ = [
     "Attractor",
     "AttractorSet",
     "ModulatedCurve",
     "WorstCase",
+    "WorstMotion",
     "basin_map",
+    "driven_at",
     "find_attractors",
     "modulated_branches",
     "modulated_response",

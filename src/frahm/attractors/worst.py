@@ -1,89 +1,123 @@
-"""`worst_case`: the largest motion over a window of the excitation frequency, all attractors considered."""
+"""`worst_case`: the largest lasting motion over a range of operation, all attractors considered."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.attractors.finding import MOST_SAMPLES, PERIODS, attractors_from
+from frahm.attractors.linear_motion import linear_motions
 from frahm.attractors.regions import Region, checked_region, region_for
 from frahm.attractors.stroboscope import stroboscope
+from frahm.attractors.worst_motion import WorstMotion
 from frahm.case import load_case
 from frahm.errors import Outcome, ParameterError, check_count, check_number
-from frahm.harmonic_balance import (
-    PeriodicResponse,
-    begin,
-    find_branches,
-    is_linear,
-    periodic_responses_of,
-    responses_on,
-)
+from frahm.harmonic_balance import PeriodicResponse, is_linear, responses_on
+from frahm.loads import OperatingRange, frequency_range, operating_range
 from frahm.response import ResponseCurve
-from frahm.response.exact import exact_curve
-from frahm.response.wind import WindAxis, wind_axis
+from frahm.response.exact import curve_and_branches
 from frahm.systems import System, as_system, detuning_of, excitation_window, with_parameters
 
 if TYPE_CHECKING:
     from frahm.case import Case
 
-_SPREAD = 9  # frequencies spread over the window
+# Frequencies are compared by their ratio: what is near scales with the pipe, and does not depend on the range.
+_SPREAD, _BAND = 9, 0.55  # frequencies spread over the range: at least so many, and over every such ln(hi/lo)
 _SPECIAL = 10  # special points of the response curve looked at on both sides, the largest first
-_BESIDE = 1e-3  # of the window: how far beside a special point
-_CLOSE = 5e-4  # of the window: frequencies nearer than this are one
-_FINE = 2e-3  # of the window: how near its neighbours the worst is looked at in the end
-_ROUNDS = 9
+_BESIDE = 1.6e-4  # how far beside a special point, of the frequency
+_CLOSE = 8e-5  # frequencies nearer than this are one
+_FINE = 3.3e-4  # how near its neighbours the worst is looked at in the end
+_ROUNDS = 12
+_LARGER = 1.01  # what is larger by less is as large
 
 Size = Callable[[Attractor], float]
 
 
 @dataclass(frozen=True, eq=False)
 class WorstCase:
-    """The worst over a window, and where it was looked for.
+    """The worst over a range of operation, and where it was looked for.
 
     Attributes
     ----------
-    pipe_peak : float
-        Largest pipe peak [m] of an attractor with a basin fraction of at least `min_basin`.
-    relative_peak : float
-        Largest peak of the first element [m], which another attractor at another frequency may cause.
-    detuning, frequency : float
-        Where the pipe peak occurs [rad/s].
+    motion : WorstMotion
+        The record; the properties below read it.
     attractor : Attractor
         What causes the pipe peak.
-    pipe_rms, rms_frequency : float
-        Largest pipe rms [m] of an attractor that counts, and where it occurs [rad/s]; bracketed like the peaks only if
-        the rms was asked for.
-    relative_detuning, relative_frequency : float
-        Where the relative peak occurs [rad/s].
+    range : OperatingRange
+        What was asked about.
     not_excluded : float
         Largest pipe peak [m] of an attractor whose 95 % interval of the basin fraction reaches `min_basin`.
-    verified : bool
-        Whether nothing speaks against it; what does is in `unverified`.
-    unverified : tuple of str
-        Sentences: motions that did not settle, an interruption, a worst that was not bracketed finely.
     surveys : tuple of AttractorSet
         All frequencies looked at, ascending.
     min_basin : float
     """
 
-    pipe_peak: float
-    relative_peak: float
-    detuning: float
-    frequency: float
+    motion: WorstMotion
     attractor: Attractor
-    pipe_rms: float
-    rms_frequency: float
-    relative_detuning: float
-    relative_frequency: float
+    range: OperatingRange
     not_excluded: float
-    verified: bool
-    unverified: tuple[str, ...]
     surveys: tuple[AttractorSet, ...]
     min_basin: float
+
+    @property
+    def pipe_peak(self) -> float:
+        """Largest pipe peak [m] of an attractor with a basin fraction of at least `min_basin`."""
+        return self.motion.pipe_peak
+
+    @property
+    def relative_peak(self) -> float:
+        """Largest peak of the first element [m], which another attractor at another frequency may cause."""
+        return self.motion.relative_peak
+
+    @property
+    def pipe_rms(self) -> float:
+        """Largest pipe rms [m]; bracketed like the peaks only if it was asked for."""
+        return self.motion.pipe_rms
+
+    @property
+    def detuning(self) -> float:
+        """Where the pipe peak occurs [rad/s]."""
+        return self.motion.detuning
+
+    @property
+    def frequency(self) -> float:
+        """Where the pipe peak occurs [rad/s]."""
+        return self.motion.frequency
+
+    @property
+    def wind_speed(self) -> float:
+        """Where the pipe peak occurs [m/s]; NaN for a window of detuning or frequency."""
+        return self.motion.wind_speed
+
+    @property
+    def relative_frequency(self) -> float:
+        """Where the relative peak occurs [rad/s]."""
+        return self.motion.relative_frequency
+
+    @property
+    def relative_detuning(self) -> float:
+        """Where the relative peak occurs [rad/s]."""
+        return self.motion.relative_frequency - (self.motion.frequency - self.motion.detuning)
+
+    @property
+    def rms_frequency(self) -> float:
+        """Where the rms is largest [rad/s]."""
+        return self.motion.rms_frequency
+
+    @property
+    def verified(self) -> bool:
+        """Whether nothing speaks against it; what does is in `unverified`."""
+        return self.motion.verified
+
+    @property
+    def unverified(self) -> tuple[str, ...]:
+        """Sentences: motions that did not settle, a larger one beyond the range or with a smaller basin."""
+        return self.motion.unverified
 
 
 def worst_case(
@@ -102,8 +136,10 @@ def worst_case(
 ) -> WorstCase:
     """Largest pipe and relative peak over all attractors with a basin fraction of at least `min_basin`.
 
-    The frequencies looked at are spread over the window, stand beside the special points of the exact response curve
-    and at its stable maxima; around the worst they are then halved until it is known to 0.2 % of the window.
+    The frequencies looked at are spread over the range, stand beside the special points of the exact response curve
+    and at its stable maxima; around the worst they are then halved until its frequency is known to 0.03 %. The worst
+    is unverified if it sits at an end of the range, if the range widened by half has a motion larger by more than 1 %,
+    or if a stable response with a smaller basin is larger by more than 1 %.
 
     Parameters
     ----------
@@ -113,7 +149,7 @@ def worst_case(
         Window (lo, hi) of sigma or Omega [rad/s].
     wind : tuple of float
         Window (lo, hi) of the wind speed of a case [m/s]: shedding frequency and lift both follow it. Give one of the
-        three.
+        three; with none a case is asked about its own range of operation, see `frahm.loads.operating_range`.
     samples : int
         Initial states at every frequency.
     min_basin : float
@@ -140,17 +176,8 @@ def worst_case(
         For bad input.
     """
     system = as_system(case_or_system)
-    axis = None
-    if wind is None:
-        lo, hi = excitation_window(system, detuning=detuning, frequency=frequency)
-    elif detuning is not None or frequency is not None or isinstance(case_or_system, System):
-        allowed = "for a case, and without detuning and frequency"
-        raise ParameterError("wind", wind, allowed)
-    else:
-        axis = wind_axis(load_case(case_or_system), wind)
-        lo, hi = axis.frequency
     return worst_over(
-        system, lo, hi, axis,
+        system, _range(case_or_system, system, detuning, frequency, wind),
         samples=check_count("samples", samples, at_most=MOST_SAMPLES),
         min_basin=check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
         seed=check_count("seed", seed, at_least=0),
@@ -161,33 +188,63 @@ def worst_case(
     )  # fmt: skip
 
 
+def _range(case_or_system: Any, system: System, detuning: Any, frequency: Any, wind: Any) -> OperatingRange:
+    """The range asked about: what was given, or that of the case."""
+    if isinstance(case_or_system, System):
+        if wind is not None:
+            raise ParameterError("wind", wind, "left out for a System, which knows no wind; give a case instead")
+    elif detuning is None and frequency is None:
+        return operating_range(load_case(case_or_system), wind=wind)
+    elif wind is not None:
+        raise ParameterError("detuning, frequency, wind", (detuning, frequency, wind), "at most one of the three")
+    lo, hi = excitation_window(system, detuning=detuning, frequency=frequency)
+    return frequency_range(lo, hi, lo - float(detuning_of(system, lo)))
+
+
 def worst_over(
-    system: System, lo: float, hi: float, axis: WindAxis | None = None, *, samples: int, min_basin: float, seed: int,
+    system: System, within: OperatingRange, *, samples: int, min_basin: float, seed: int,
     region: Region | None = None, periods: int = PERIODS, workers: int | None = None, rms: bool = False,
 ) -> WorstCase:  # fmt: skip
-    """`worst_case` of a system between two frequencies Omega [rad/s]; with a wind axis the lift follows the wind."""
-    factor = None if axis is None else axis.factor
-    curve = exact_curve(system, lo, hi, None, factor)
-    box = region or _region_of(system, curve, hi)
-    at, responses_at = _systems(system, axis), _responses(system, lo, hi, axis)
+    """`worst_case` of a system over a range of operation."""
+    wide = within.widened()
+    curve, responses_at = _curve(system, wide)
+    at = driven_at(system, wide)
     surveys: dict[float, AttractorSet] = {}
     sizes = (_pipe, _relative, _rms) if rms else (_pipe, _relative)
+    lo, hi = within.frequency
+    if is_linear(system) or not np.any(system.forcing):
+        return _concluded(system, within, wide, curve, linear_motions(system, curve, within), min_basin, ())
+    box = region or _region_of(system, curve, lo, hi)
+
+    def survey(W: float, exponents: bool = False) -> AttractorSet:
+        strobe = stroboscope(at(W), W, workers)
+        return attractors_from(strobe, responses_at(W), box, samples, seed, periods, exponents)
 
     def look(W: float, exponents: bool = False) -> None:
-        strobe = stroboscope(at(W), W, workers)
-        surveys[W] = attractors_from(strobe, responses_at(W), box, samples, seed, periods, exponents)
+        surveys[W] = survey(W, exponents)
 
-    interrupted = False
+    doubts: list[str] = []
     try:
         for W in _first_frequencies(curve, lo, hi):
             look(W)
-        _refine(surveys, look, lo, hi, min_basin, sizes)
+        _refine(surveys, look, min_basin, sizes)
         look(_largest(surveys, _pipe, min_basin)[0], exponents=True)
+        beyond = {W: survey(W) for W in _outside(curve, lo, hi)}
+        doubts += _larger_beyond(beyond, _largest(surveys, _pipe, min_basin)[1].pipe_peak, min_basin, wide)
     except KeyboardInterrupt:
-        interrupted = True
         if not surveys:
             raise
-    return _verdict(system, curve, surveys, lo, hi, min_basin, interrupted, sizes)
+        doubts.append(Outcome.INTERRUPTED.value)
+    if any(_gaps(surveys, W) for W in {_largest(surveys, size, min_basin)[0] for size in sizes}):
+        doubts.append("The frequency of the worst was not bracketed to 0.03 %.")
+    return _concluded(system, within, wide, curve, surveys, min_basin, tuple(doubts))
+
+
+def driven_at(system: System, within: OperatingRange) -> Callable[[float], System]:
+    """The system as it is driven at a frequency of a range."""
+    if not within.over_wind:
+        return lambda W: system
+    return lambda W: with_parameters(system, force=within.lift_factor(W))
 
 
 def _pipe(attractor: Attractor) -> float:
@@ -202,77 +259,61 @@ def _rms(attractor: Attractor) -> float:
     return attractor.pipe_rms
 
 
-def _systems(system: System, axis: WindAxis | None) -> Callable[[float], System]:
-    """The system as it is driven at a frequency."""
-    if axis is None:
-        return lambda W: system
-    return lambda W: with_parameters(system, force=axis.lift_factor(W))
+def _curve(system: System, within: OperatingRange) -> tuple[ResponseCurve, Callable[[float], list[PeriodicResponse]]]:
+    """The exact response over a range, and the periodic responses at a frequency of it; branches are followed once."""
+    curve, search, tracks = curve_and_branches(system, *within.frequency, None, within.factor)
+    return curve, lambda W: [] if search is None else responses_on(search, tracks, W)
 
 
-def _responses(
-    system: System, lo: float, hi: float, axis: WindAxis | None
-) -> Callable[[float], list[PeriodicResponse]]:
-    """Periodic responses at a frequency of the window, whose branches are followed once."""
-    if is_linear(system) or not np.any(system.forcing):
-        at = _systems(system, axis)
-        return lambda W: periodic_responses_of(at(W), W, None)
-    search = begin(system, lo, hi, None, None if axis is None else axis.factor)
-    tracks = find_branches(search)
-    return lambda W: responses_on(search, tracks, W)
-
-
-def _region_of(system: System, curve: ResponseCurve, frequency: float) -> Region:
+def _region_of(system: System, curve: ResponseCurve, lo: float, hi: float) -> Region:
+    inside = (curve.frequency >= lo) & (curve.frequency <= hi)
     pipe, stroke = (
-        float(np.max(peaks[curve.stable & np.isfinite(peaks)], initial=0.0))
+        float(np.max(peaks[inside & curve.stable & np.isfinite(peaks)], initial=0.0))
         for peaks in (curve.pipe_peak, curve.relative_peak)
     )
-    return region_for(system, frequency, pipe, stroke)
+    return region_for(system, hi, pipe, stroke)
 
 
 def _first_frequencies(curve: ResponseCurve, lo: float, hi: float) -> list[float]:
     """Frequencies to start with, ascending, none too near to another."""
-    width = hi - lo
-    wanted = [lo, hi, *np.linspace(lo, hi, _SPREAD)[1:-1]]
+    count = max(_SPREAD, math.ceil(_SPREAD * math.log(hi / lo) / _BAND))
+    wanted = [lo, hi, *np.linspace(lo, hi, count)[1:-1]]
+    inside = (curve.frequency >= lo) & (curve.frequency <= hi)
     for peaks in (curve.pipe_peak, curve.relative_peak):
         for branch in np.unique(curve.branch):
-            here = np.flatnonzero((curve.branch == branch) & curve.stable & np.isfinite(peaks))
+            here = np.flatnonzero((curve.branch == branch) & inside & curve.stable & np.isfinite(peaks))
             if here.size:
                 wanted.append(float(curve.frequency[here[np.argmax(peaks[here])]]))
-    largest_first = sorted(curve.special_points, key=lambda point: -point.pipe_peak)
-    for point in largest_first[:_SPECIAL]:
-        wanted += [point.frequency - _BESIDE * width, point.frequency + _BESIDE * width]
+    within = [point for point in curve.special_points if lo <= point.frequency <= hi]
+    for point in sorted(within, key=lambda point: -point.pipe_peak)[:_SPECIAL]:
+        wanted += [point.frequency * (1 - _BESIDE), point.frequency * (1 + _BESIDE)]
     chosen: list[float] = []
     for W in wanted:
-        if lo <= W <= hi and all(abs(W - other) > _CLOSE * width for other in chosen):
+        if lo <= W <= hi and all(abs(W - other) > _CLOSE * W for other in chosen):
             chosen.append(float(W))
     return sorted(chosen)
 
 
 def _refine(
-    surveys: dict[float, AttractorSet], look: Callable[[float], None], lo: float, hi: float, min_basin: float,
-    sizes: tuple[Size, ...],
-) -> None:  # fmt: skip
+    surveys: dict[float, AttractorSet], look: Callable[[float], None], min_basin: float, sizes: tuple[Size, ...]
+) -> None:
     """Halve the gaps beside the worst until they are fine."""
     for _ in range(_ROUNDS):
-        middles = {
-            middle
-            for size in sizes
-            for middle in _gaps(surveys, _largest(surveys, size, min_basin)[0], _FINE * (hi - lo))
-        }
+        middles = {middle for size in sizes for middle in _gaps(surveys, _largest(surveys, size, min_basin)[0])}
         if not middles:
             return
         for W in sorted(middles):
             look(W)
 
 
-def _gaps(surveys: Iterable[float], worst: float, fine: float) -> list[float]:
-    """Middles of the gaps beside the worst that are wider than `fine`."""
+def _gaps(surveys: Iterable[float], worst: float) -> list[float]:
+    """Middles of the gaps beside the worst that are not fine."""
     grid = sorted(surveys)
     at = grid.index(worst)
     return [
         0.5 * (worst + grid[other])
         for other in (at - 1, at + 1)
-        if 0 <= other < len(grid) and abs(grid[other] - worst) > fine
+        if 0 <= other < len(grid) and abs(grid[other] - worst) > _FINE * worst
     ]
 
 
@@ -289,37 +330,105 @@ def _largest(surveys: dict[float, AttractorSet], size: Size, min_basin: float) -
     return max(counting, key=lambda item: size(item[1]))
 
 
-def _verdict(
-    system: System, curve: ResponseCurve, surveys: dict[float, AttractorSet], lo: float, hi: float, min_basin: float,
-    interrupted: bool, sizes: tuple[Size, ...],
+def _outside(curve: ResponseCurve, lo: float, hi: float) -> list[float]:
+    """Frequencies beyond a range at which a larger motion is most likely: largest responses, stable and unstable."""
+    found = []
+    for side in (curve.frequency < lo, curve.frequency > hi):
+        for state in (curve.stable, ~curve.stable):
+            here = np.flatnonzero(side & state & np.isfinite(curve.pipe_peak))
+            if here.size:
+                found.append(float(curve.frequency[here[np.argmax(curve.pipe_peak[here])]]))
+    return sorted(set(found))
+
+
+def _larger_beyond(
+    beyond: dict[float, AttractorSet], worst: float, min_basin: float, wide: OperatingRange
+) -> list[str]:
+    """What the range widened by half has that is larger than the worst inside."""
+    if not beyond:
+        return []
+    W, attractor = _largest(beyond, _pipe, min_basin)
+    return _beyond(attractor.pipe_peak, W, worst, wide)
+
+
+def _beyond(peak: float, W: float, worst: float, wide: OperatingRange) -> list[str]:
+    if not peak > _LARGER * worst:
+        return []
+    return [f"Beyond the range, at {wide.place(W)}, a motion of {peak:.4g} m is larger than the worst inside."]
+
+
+def _doubts(
+    within: OperatingRange, wide: OperatingRange, curve: ResponseCurve, surveys: dict[float, AttractorSet],
+    worst: tuple[float, Attractor], min_basin: float,
+) -> list[str]:  # fmt: skip
+    """What speaks against the worst."""
+    lo, hi = within.frequency
+    W, attractor = worst
+    doubts = [*curve.unverified]
+    if any(survey.outcome is Outcome.INTERRUPTED for survey in surveys.values()):
+        doubts.append(Outcome.INTERRUPTED.value)
+    for at in sorted(surveys):
+        for other in surveys[at]:
+            if other.kind == "unsettled" and other.basin_fraction >= min_basin:
+                share = f"{100 * other.basin_fraction:.2g} % of the motions at Omega = {at:.6g} rad/s"
+                doubts.append(f"{share} are unsettled: {other.outcome.value}")
+    for end, edge in enumerate((lo, hi)):
+        if abs(W - edge) <= _FINE * W and not within.closed(end):
+            where = "lower" if end == 0 else "upper"
+            doubts.append(
+                f"The worst motion sits at the {where} end of the range, {within.place(edge)}: beyond it grows."
+            )
+    stable = curve.stable_or_limit & np.isfinite(curve.pipe_peak)
+    inside = (curve.frequency >= lo) & (curve.frequency <= hi)
+    for part, beyond in ((stable & inside, False), (stable & ~inside, True)):
+        if not np.any(part):
+            continue
+        at_most = int(np.argmax(np.where(part, curve.pipe_peak, -1.0)))
+        peak, where_ = float(curve.pipe_peak[at_most]), float(curve.frequency[at_most])
+        if beyond:
+            doubts += _beyond(peak, where_, attractor.pipe_peak, wide)
+        elif peak > _LARGER * attractor.pipe_peak:
+            doubts.append(
+                f"A stable response of {peak:.4g} m at {wide.place(where_)} is larger; "
+                f"less than {100 * min_basin:.3g} % of the sampled states end on it."
+            )
+    return list(dict.fromkeys(doubts))
+
+
+def _concluded(
+    system: System, within: OperatingRange, wide: OperatingRange, curve: ResponseCurve,
+    surveys: dict[float, AttractorSet], min_basin: float, doubts: tuple[str, ...],
 ) -> WorstCase:  # fmt: skip
     W, worst = _largest(surveys, _pipe, min_basin)
     W_relative, stroke = _largest(surveys, _relative, min_basin)
     W_rms, loudest = _largest(surveys, _rms, min_basin)
-    doubts = [*curve.unverified]
-    if interrupted or any(survey.outcome is Outcome.INTERRUPTED for survey in surveys.values()):
-        doubts.append(Outcome.INTERRUPTED.value)
-    for at in sorted(surveys):
-        for attractor in surveys[at]:
-            if attractor.kind == "unsettled" and attractor.basin_fraction >= min_basin:
-                share = f"{100 * attractor.basin_fraction:.2g} % of the motions at Omega = {at:.6g} rad/s"
-                doubts.append(f"{share} are unsettled: {attractor.outcome.value}")
-    if any(_gaps(surveys, at, _FINE * (hi - lo)) for at in {_largest(surveys, size, min_basin)[0] for size in sizes}):
-        doubts.append("The worst was not bracketed to 0.2 % of the window.")
+    linear = is_linear(system) or not np.any(system.forcing)
+    found = _doubts(within, wide, curve, surveys, (W, worst), min_basin)
     possible = [a.pipe_peak for s in surveys.values() for a in s if a.basin_interval[1] >= min_basin]
-    return WorstCase(
+    motion = WorstMotion(
         pipe_peak=worst.pipe_peak,
-        relative_peak=stroke.relative_peak,
-        detuning=float(detuning_of(system, W)),
         frequency=W,
-        attractor=worst,
+        detuning=float(detuning_of(system, W)),
+        wind_speed=float(within.speed(W)),
+        kind=worst.kind,
+        basin_fraction=worst.basin_fraction,
+        basin_interval=worst.basin_interval,
+        relative_peak=stroke.relative_peak,
+        relative_frequency=W_relative,
         pipe_rms=loudest.pipe_rms,
         rms_frequency=W_rms,
-        relative_detuning=float(detuning_of(system, W_relative)),
-        relative_frequency=W_relative,
+        state=worst.representative_state,
+        range=within.text,
+        tier="exact linear response" if linear else "attractor search",
+        samples=surveys[W].samples,
+        searched=len(surveys),
+        unverified=tuple(dict.fromkeys([*doubts, *found])),
+    )
+    return WorstCase(
+        motion=motion,
+        attractor=worst,
+        range=within,
         not_excluded=float(np.nanmax([*possible, worst.pipe_peak])),
-        verified=not doubts,
-        unverified=tuple(doubts),
         surveys=tuple(surveys[at] for at in sorted(surveys)),
         min_basin=min_basin,
     )

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, field_validator
+from pydantic import Field, model_validator
 
-from frahm.case.quantities import Choice, Count, Quantity, refusal
+from frahm.case.quantities import Choice, Count, Range, refusal
 from frahm.case.section import Section
 
 
 class Analysis(Section):
     """What is computed for the case."""
 
-    detuning: tuple[
-        Annotated[float, Quantity("rad/s", "sigma")],
-        Annotated[float, Quantity("rad/s", "sigma")],
-    ] = Field(
-        default=(-0.4, 0.4),
+    wind: Annotated[tuple[float, float] | None, Range("m/s", "U", above=0)] = Field(
+        default=None,
+        title="Window of wind speed",
+        description="Winds looked at, each with its own lift; left out: all winds of the site that excite a mode.",
+    )
+    detuning: Annotated[tuple[float, float] | None, Range("rad/s", "sigma")] = Field(
+        default=None,
         title="Window of detuning",
-        description="Lowest and highest excitation frequency, counted from the natural frequency of the pipe.",
+        description="In place of winds: excitation frequency minus natural frequency, all with the lift of wind.speed.",
     )
     harmonics: Annotated[int | Literal["auto"], Count(at_most=199, words=("auto",))] = Field(
         default="auto",
@@ -47,9 +49,9 @@ class Analysis(Section):
         description="Seed of the random initial states: the same seed gives the same result.",
     )
 
-    @field_validator("detuning", mode="after")
-    @classmethod
-    def _ascending(cls, window: tuple[float, float]) -> tuple[float, float]:
-        if not window[0] < window[1]:
-            raise refusal("two numbers (lo, hi) with lo < hi [rad/s]")
-        return window
+    @model_validator(mode="after")
+    def _one_window(self) -> Analysis:
+        if self.wind is not None and self.detuning is not None:
+            hint = "The lift follows the wind, or it stays that of wind.speed over a window of detuning."
+            raise refusal("at most one of wind and detuning", hint=hint, path="analysis.wind", value=list(self.wind))
+        return self

@@ -15,6 +15,7 @@ from frahm.case.analysis import Analysis
 from frahm.case.climate import Climate
 from frahm.case.design import Design
 from frahm.case.fatigue import Fatigue
+from frahm.case.limits import Limits
 from frahm.case.pipe import AnyPipe
 from frahm.case.problems import parameter_error
 from frahm.case.quantities import Label, refusal
@@ -53,6 +54,9 @@ class Case(Section):
     fatigue: Fatigue | None = Field(
         default=None, title="Fatigue", description="The detail whose fatigue damage is counted."
     )
+    limits: Limits | None = Field(
+        default=None, title="Limits", description="What the member must keep to pass; nothing else is held against it."
+    )
     design: Design | None = Field(
         default=None, title="Design", description="What the best absorber is asked for, by frahm design."
     )
@@ -72,10 +76,10 @@ class Case(Section):
 
     @model_validator(mode="after")
     def _consistent(self) -> Case:
-        lowest, omega = self.analysis.detuning[0], self.pipe.frequency
-        if lowest <= -omega:
+        window, omega = self.analysis.detuning, self.pipe.frequency
+        if window is not None and window[0] <= -omega:
             allowed = f"more than -{omega:g} rad/s, where the excitation frequency is zero"
-            raise refusal(allowed, path="analysis.detuning[0]", value=lowest)
+            raise refusal(allowed, path="analysis.detuning[0]", value=window[0])
         speed = self.wind.speed
         for field, (low, high) in self.wind.speed_ranges(self.pipe.diameter).items():
             if not low * (1 - 1e-12) <= speed <= high * (1 + 1e-12):

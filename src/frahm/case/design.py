@@ -8,37 +8,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from frahm.case.quantities import Choice, Count, Quantities, Quantity, QuantityOrNothing, refusal
+from frahm.case.quantities import Choice, Count, Quantities, Quantity, QuantityOrNothing, Range
 from frahm.case.section import Section
 
 FAMILIES = ("sink", "tuned", "mixed")
 OBJECTIVES = ("peak", "rms", "expected", "damage")
-
-
-@dataclass(frozen=True)
-class Range(Quantity):
-    """Two quantities of one kind, the lower first; or nothing."""
-
-    @property
-    def allowed(self) -> str:
-        """What is let in."""
-        return f"two numbers (lo, hi) with lo < hi, each {super().allowed}; or nothing"
-
-    def read(self, value: Any) -> Any:
-        """Both ends in the SI unit, or None."""
-        if value is None:
-            return None
-        if isinstance(value, str) or not hasattr(value, "__len__") or len(value) != 2:
-            raise refusal(self.allowed)
-        lo, hi = (super(Range, self).read(end) for end in value)
-        if not lo < hi:
-            raise refusal(self.allowed)
-        return lo, hi
-
-    def json_schema(self) -> dict[str, Any]:
-        """JSON schema."""
-        ends = {"type": "array", "minItems": 2, "maxItems": 2, "items": super().json_schema()}
-        return {"anyOf": [ends, {"type": "null"}]}
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from frahm.case.csv_text import Column, csv_rows
-from frahm.case.quantities import Choice, Door, Quantity, refusal
+from frahm.case.quantities import Choice, Door, Quantity, Range, refusal
 from frahm.case.reynolds import LIFT, LIFT_CURVES, STROUHAL, STROUHAL_CURVES, Coefficient, reynolds_range
 from frahm.case.section import Section
 
@@ -103,6 +103,11 @@ class Wind(Section):
         description="Amplitude of the lift over 1/2 rho U^2 D per length; a number, a table or a published curve.",
     )
 
+    range: Annotated[tuple[float, float] | None, Range("m/s", "U", at_least=0)] = Field(
+        default=None,
+        title="Winds of the site",
+        description="Lowest and highest speed the pipe can meet; left out: those of the climate, or no bound.",
+    )
     record: Annotated[tuple[tuple[float, float], ...], Record()] = Field(
         default=(),
         title="Wind record",

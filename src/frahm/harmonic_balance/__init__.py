@@ -1,7 +1,7 @@
 """Room `harmonic_balance`: exact periodic responses, every branch, with Floquet multipliers and special points."""
 
 from frahm.harmonic_balance.branches import Search, Track, begin, connected, find_branches
-from frahm.harmonic_balance.linear import check_rest, is_linear, linear_growth, linear_response
+from frahm.harmonic_balance.linear import check_rest, is_linear, linear_growth, linear_response, resonant_grid
 from frahm.harmonic_balance.responses import PeriodicResponse, periodic_responses_of, responses_on
 
 __all__ = [
@@ -16,5 +16,6 @@ __all__ = [
     "linear_growth",
     "linear_response",
     "periodic_responses_of",
+    "resonant_grid",
     "responses_on",
 ]

@@ -39,6 +39,7 @@ _SEED_FREQUENCIES = 17
 _QUICK = 0.2  # way of a multiplier near the unit circle from point to point that asks for a point between
 _BEYOND = 12  # windows beyond the upper edge in which branches that leave it are followed
 _GRID = 401
+_BAND = 0.65  # ln(hi/lo) of the widest window these numbers of frequencies are for: wider ones take more of them
 _SHORT_RANGE, _AROUND = 16, 9  # points of the grid in a short range of three roots; frequencies looked at around it
 _STRONG_FREQUENCIES = 9
 _STRONG_THIRD = 0.12  # third harmonic beside the first from where on both are searched together
@@ -146,27 +147,29 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
     With one cubic element the roots are continuous where their number is constant, so that one frequency in every
     such range, and both edges, stand for all.
     """
-    spread = np.linspace(search.lo, search.hi, _SEED_FREQUENCIES)
+    bands = max(1.0, math.log(search.hi / search.lo) / _BAND)
+    points, seeds = math.ceil(_GRID * bands), math.ceil(_SEED_FREQUENCIES * bands)
+    spread = np.linspace(search.lo, search.hi, seeds)
     pb, seeder = search.problem, search.seeder
     e, table = seeder.spring, seeder.table
     cubic = e is not None and e.size == 2 and e[0] == 0 and not seeder.buckled
-    dense = np.linspace(search.lo, search.hi, 3 * _SEED_FREQUENCIES)
+    dense = np.linspace(search.lo, search.hi, 3 * seeds)
     if pb.directions.shape != (1, 1) or (e is None and table is None):
         return dense, np.empty(0), np.empty(0)
-    grid = np.linspace(search.lo, search.hi, _GRID)
-    counts, excess = np.empty(_GRID, np.int64), np.empty(_GRID)
+    grid = np.linspace(search.lo, search.hi, points)
+    counts, excess = np.empty(points, np.int64), np.empty(points)
     if cubic and e is not None:
         count_cubic(pb, grid, e[1], counts, excess)
     else:
         parts = [stiffness_at(pb, 1, float(W)) for W in grid]
         S, F = (np.array([part[which].flat[0] for part in parts]) for which in (0, 1))
-        counts, excess = np.zeros(_GRID, np.int64), np.full(_GRID, -math.inf)
+        counts, excess = np.zeros(points, np.int64), np.full(points, -math.inf)
         found = [] if e is None else [polynomial_counts(e, S, F)]
         found += [] if table is None else [table_counts(pb, table, grid, S, F)]
         for number, near_miss in found:
             counts, excess = counts + number, np.maximum(excess, near_miss)
     edges = np.flatnonzero(np.diff(counts)) + 1
-    runs = np.split(np.arange(_GRID), edges)
+    runs = np.split(np.arange(points), edges)
     middles = [grid[run[len(run) // 2]] for run in runs]
     inner = excess[1:-1]
     almost = np.flatnonzero((inner > excess[:-2]) & (inner > excess[2:]) & (inner < 0)) + 1

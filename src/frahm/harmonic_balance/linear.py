@@ -9,6 +9,9 @@ from frahm.errors import ParameterError
 from frahm.harmonic_balance.condensation import linear_part
 from frahm.systems import System
 
+_EVEN, _AROUND = 1001, 201  # points over the range, and around every resonance
+_NARROWEST = 1e-9  # of the frequency: half width of a resonance without damping
+
 
 def is_linear(system: System) -> bool:
     """Whether every element of the system has a linear law."""
@@ -51,6 +54,22 @@ def linear_exponents(system: System) -> Complexes:
     inverse = np.linalg.inv(system.mass)
     A = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ K, -inverse @ C]])
     return np.asarray(np.linalg.eigvals(A), dtype=complex)
+
+
+def resonant_grid(system: System, lo: float, hi: float) -> Floats:
+    """Frequencies [rad/s] from lo to hi on which a linear response is drawn true to its resonances.
+
+    Evenly spread, and around every eigenvalue -delta + i omega_d of the linear part at omega_d + delta tan(theta) with
+    theta evenly spread, which is evenly along the circle that a resonance draws in the complex plane.
+    """
+    values = linear_exponents(system)
+    turns = np.tan(np.linspace(-0.5, 0.5, _AROUND + 2)[1:-1] * np.pi)
+    parts = [np.linspace(lo, hi, _EVEN)]
+    for value in values[values.imag > 0]:
+        parts.append(value.imag + max(-value.real, _NARROWEST * value.imag) * turns)
+    undamped = system.natural_frequencies
+    grid = np.unique(np.concatenate([*parts, undamped]))
+    return grid[(grid >= lo) & (grid <= hi)]
 
 
 def linear_growth(system: System) -> float:

@@ -13,6 +13,15 @@ from frahm.loads.amplitudes import (
 )
 from frahm.loads.climate import Persistence, WindClimate, persistence, wind_climate
 from frahm.loads.onset import Criterion, onset_criteria, onset_sentence
+from frahm.loads.operating_range import (
+    OperatingRange,
+    excited_bands,
+    frequency_range,
+    operating_range,
+    other_modes,
+    site_winds,
+    split_resonances,
+)
 from frahm.loads.over_wind import (
     ExcitationOverWind,
     WindExcitation,
@@ -49,6 +58,7 @@ __all__ = [
     "ExcitationOverWind",
     "LockInBand",
     "ModeFactors",
+    "OperatingRange",
     "Persistence",
     "ReynoldsCurve",
     "Similarity",
@@ -61,7 +71,9 @@ __all__ = [
     "amplitude_estimates",
     "eurocode_amplitude",
     "excitation_over_wind",
+    "excited_bands",
     "forced_amplitude",
+    "frequency_range",
     "griffin_skop_amplitude",
     "lift_amplitude",
     "lift_curve",
@@ -69,6 +81,8 @@ __all__ = [
     "mode_factors",
     "onset_criteria",
     "onset_sentence",
+    "operating_range",
+    "other_modes",
     "persistence",
     "read_record",
     "reduced_velocity",
@@ -77,9 +91,11 @@ __all__ = [
     "scruton_number",
     "shedding_frequency",
     "similarity",
+    "site_winds",
     "skop_griffin_number",
     "spectral_density",
     "speed_window",
+    "split_resonances",
     "strouhal_curve",
     "turbulent_record",
     "vortex_shedding",

@@ -18,12 +18,12 @@ from frahm.harmonic_balance import (
     is_linear,
     linear_growth,
     linear_response,
+    resonant_grid,
 )
 from frahm.harmonic_balance.describing import PER_DECADE
 from frahm.response.curve import ResponseCurve, SpecialPoint
 from frahm.systems import System, detuning_of
 
-_LINEAR_POINTS = 2001
 _ENDED_WELL = (0, 1)
 _ROUGH = 1e-3  # truncation that is worth a word
 
@@ -35,18 +35,25 @@ def exact_curve(
 
     `forcing` is a factor on the forcing over Omega, see `frahm.harmonic_balance.kernels.forcing_factor`.
     """
+    return curve_and_branches(system, lo, hi, harmonics, forcing)[0]
+
+
+def curve_and_branches(
+    system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None
+) -> tuple[ResponseCurve, Search | None, list[Track]]:
+    """`exact_curve`, with the search and the branches behind it; a linear system has none."""
     settings: dict[str, Any] = {
         "method": "harmonic-balance",
         "harmonics": "auto" if harmonics is None else harmonics,
         "frequency_window": (lo, hi),
     }
     if is_linear(system) or not np.any(system.forcing):
-        return _linear_curve(system, lo, hi, settings, forcing)
+        return _linear_curve(system, lo, hi, settings, forcing), None, []
     search = begin(system, lo, hi, harmonics, forcing)
     tracks = find_branches(search)
     settings["inventory"] = inventory_text(search)
     settings["truncation"] = max((float(np.max(track.truncations)) for track in tracks), default=math.nan)
-    return _assembled(system, tracks, settings)
+    return _assembled(system, tracks, settings), search, tracks
 
 
 def inventory_text(search: Search) -> str:
@@ -123,8 +130,7 @@ def _linear_curve(
     system: System, lo: float, hi: float, settings: dict[str, Any], forcing: Floats | None
 ) -> ResponseCurve:
     check_rest(system)
-    inside = system.natural_frequencies[(system.natural_frequencies > lo) & (system.natural_frequencies < hi)]
-    W = np.unique(np.concatenate([np.linspace(lo, hi, _LINEAR_POINTS), inside]))
+    W = resonant_grid(system, lo, hi)
     driven = bool(np.any(system.forcing))
     X = linear_response(system, W) if driven else np.zeros((W.size, system.size))
     if forcing is not None and forcing.size:

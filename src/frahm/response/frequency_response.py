@@ -6,10 +6,9 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from frahm.case import Case, load_case
 from frahm.errors import ParameterError, check_choice, check_count
+from frahm.loads import OperatingRange, operating_range
 from frahm.response.curve import ResponseCurve, SpecialPoint
 from frahm.slow_flow import SlowBranches, SlowFlow, pipe_scale, slow_branches, slow_flow_of
 from frahm.systems import System, as_system, detuning_of, excitation_frequency, excitation_window
@@ -45,7 +44,8 @@ def frequency_response(
         Window (lo, hi) in Omega [rad/s].
     wind : tuple of float, optional
         Window (lo, hi) in wind speed U [m/s] of a case: shedding frequency and lift both follow it. Give one of the
-        three windows; the wind is for the harmonic balance only.
+        three windows; the wind is for the harmonic balance only. With none, a case is asked about its own range of
+        operation, see `frahm.loads.operating_range`.
     method : str
         "harmonic-balance": the exact equations of any system. "slow-flow": the one-harmonic theory of one mode with
         one cubic sink, every branch in closed form.
@@ -68,8 +68,16 @@ def frequency_response(
     """
     system = as_system(case_or_system)
     check_choice("method", method, METHODS)
-    if wind is not None:
-        return _over_wind(case_or_system, system, wind, (detuning, frequency), method, harmonics)
+    if wind is not None and (detuning is not None or frequency is not None):
+        raise ParameterError("detuning, frequency, wind", (detuning, frequency, wind), "at most one of the three")
+    if isinstance(case_or_system, System):
+        if wind is not None:
+            raise ParameterError("wind", wind, "left out for a System, which knows no wind; give a case instead")
+    elif detuning is None and frequency is None:
+        within = operating_range(load_case(case_or_system), wind=wind)
+        if within.over_wind:
+            return _over_wind(system, within, method, harmonics)
+        frequency = within.frequency
     lo, hi = excitation_window(system, detuning=detuning, frequency=frequency)
     count = check_count("points", points, at_least=2, at_most=10_000_000)
     if method == "harmonic-balance":
@@ -84,26 +92,22 @@ def frequency_response(
     return _curve(system, slow, slow_branches(slow, lo, hi, count), settings)
 
 
-def _over_wind(
-    case_or_system: Any, system: System, wind: Any, others: tuple[Any, Any], method: str, harmonics: int | str
-) -> ResponseCurve:
+def _over_wind(system: System, within: OperatingRange, method: str, harmonics: int | str) -> ResponseCurve:
     """Response over the wind speed."""
-    if any(other is not None for other in others):
-        raise ParameterError("detuning, frequency, wind", (*others, wind), "exactly one of the three, as (lo, hi)")
-    if isinstance(case_or_system, System):
-        raise ParameterError("wind", wind, "left out for a System, which knows no wind; give a case instead")
     if method != "harmonic-balance":
-        raise ParameterError("method", method, '"harmonic-balance" where the response is wanted over the wind')
+        allowed = '"harmonic-balance" where the response is wanted over the wind'
+        hint = "The slow flow knows one lift for all frequencies: give detuning=(lo, hi)."
+        raise ParameterError("method", method, allowed, hint=hint)
     from frahm.response.exact import exact_curve
-    from frahm.response.wind import wind_axis
 
-    axis = wind_axis(load_case(case_or_system), wind)
-    curve = exact_curve(system, *axis.frequency, highest_harmonic(harmonics), axis.factor)
-    points = tuple(
-        replace(point, wind_speed=float(axis.speed(np.array(point.frequency)))) for point in curve.special_points
-    )
-    settings = {**curve.settings, "wind_window": axis.window}
-    return replace(curve, wind_speed=axis.speed(curve.frequency), special_points=points, settings=settings)
+    return with_winds(exact_curve(system, *within.frequency, highest_harmonic(harmonics), within.factor), within)
+
+
+def with_winds(curve: ResponseCurve, within: OperatingRange) -> ResponseCurve:
+    """A curve over a range of winds, with the wind speed at every point."""
+    points = tuple(replace(point, wind_speed=float(within.speed(point.frequency))) for point in curve.special_points)
+    settings = {**curve.settings, "wind_window": within.wind}
+    return replace(curve, wind_speed=within.speed(curve.frequency), special_points=points, settings=settings)
 
 
 def periodic_responses(

@@ -7,8 +7,7 @@ import frahm
 from frahm.errors import ParameterError
 from frahm.harmonic_balance.condensation import condense
 from frahm.harmonic_balance.kernels import forcing_factor, stiffness
-from frahm.loads import vortex_shedding, wind_excitation
-from frahm.response.wind import wind_axis
+from frahm.loads import operating_range, vortex_shedding, wind_excitation
 
 CASE = frahm.load_case("jacket-pipe").with_absorber(kappa=367.38, xi2=0.0085, rho2=0.02)
 BENT = CASE.with_wind(strouhal=[[5e4, 0.25], [1.3e5, 0.21], [2e5, 0.225]], lift_coefficient="en1991")
@@ -53,7 +52,7 @@ def test_a_pipe_without_absorbers_has_its_closed_form():
 
 
 def test_factor_and_its_slope_against_the_lift_and_differences():
-    axis = wind_axis(BENT, (1.2, 3.6))
+    axis = operating_range(BENT, wind=(1.2, 3.6))
     pb = condense(frahm.build_system(BENT), axis.factor)
     speeds = np.linspace(1.21, 3.59, 41)
     lift = vortex_shedding(BENT).lift
@@ -69,7 +68,7 @@ def test_factor_and_its_slope_against_the_lift_and_differences():
 
 
 def test_derivative_of_the_condensed_force_against_differences():
-    pb = condense(frahm.build_system(CASE), wind_axis(CASE, WINDOW).factor)
+    pb = condense(frahm.build_system(CASE), operating_range(CASE, wind=WINDOW).factor)
 
     def at(W):
         S, dS, f, df = np.empty((1, 1), complex), np.empty((1, 1), complex), np.empty(1, complex), np.empty(1, complex)

@@ -1,0 +1,73 @@
+"""The lasting motions of a linear system over a range of operation: one at every frequency, known in closed form."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from frahm.arrays import Floats, frozen
+from frahm.attractors.attractor import Attractor, AttractorSet
+from frahm.errors import Outcome
+from frahm.harmonic_balance import linear_growth, linear_response
+from frahm.loads import OperatingRange
+from frahm.response import ResponseCurve
+from frahm.systems import System, detuning_of
+
+_EXACT = 1e-12  # relative tolerance of the frequency of a peak
+
+
+def linear_motions(system: System, curve: ResponseCurve, within: OperatingRange) -> dict[float, AttractorSet]:
+    """The motion at the ends of a range and at the largest peaks of pipe and stroke, by frequency [rad/s].
+
+    The peaks are maximised between the points of the curve, so that they do not depend on its points.
+    """
+    lo, hi = within.frequency
+    inside = (curve.frequency >= lo) & (curve.frequency <= hi)
+    first = system.elements[0].direction if system.elements else np.zeros(system.size)
+    places = {lo, hi}
+    for row, peaks in ((system.output, curve.pipe_peak), (first, curve.relative_peak)):
+        if np.any(peaks[inside] > 0):
+            at = int(np.argmax(np.where(inside, peaks, -1.0)))
+            places.add(_summit(_amplitude(system, row, within), curve.frequency, at, lo, hi))
+    growth = linear_growth(system)
+    return {W: _alone(system, W, within, first, growth) for W in sorted(places)}
+
+
+def _amplitude(system: System, row: Floats, within: OperatingRange) -> Callable[[float], float]:
+    def at(W: float) -> float:
+        if not np.any(system.forcing):
+            return 0.0
+        return abs(complex(linear_response(system, np.array([W]))[0] @ row)) * within.lift_factor(W)
+
+    return at
+
+
+def _summit(amplitude: Callable[[float], float], grid: Floats, at: int, lo: float, hi: float) -> float:
+    from scipy.optimize import minimize_scalar  # takes long to load
+
+    left, right = max(lo, float(grid[max(at - 1, 0)])), min(hi, float(grid[min(at + 1, grid.size - 1)]))
+    here = float(grid[at])
+    if not left < right:
+        return here
+    found = minimize_scalar(lambda W: -amplitude(W), bounds=(left, right), method="bounded",
+                            options={"xatol": _EXACT * here})  # fmt: skip
+    return max((float(found.x), here), key=amplitude)
+
+
+def _alone(system: System, W: float, within: OperatingRange, first: Floats, growth: float) -> AttractorSet:
+    """The one motion at a frequency, as the set of attractors there."""
+    factor = within.lift_factor(W)
+    X = factor * linear_response(system, np.array([W]))[0] if np.any(system.forcing) else np.zeros(system.size, complex)
+    pipe, stroke = abs(complex(X @ system.output)), abs(complex(X @ first))
+    state = frozen(np.column_stack([X.real, (1j * W * X).real]).ravel())
+    sigma, nan = float(detuning_of(system, W)), math.nan
+    attractor = Attractor(
+        kind="periodic", frequency=W, detuning=sigma, pipe_peak=pipe, relative_peak=stroke,
+        pipe_rms=pipe / math.sqrt(2), relative_rms=stroke / math.sqrt(2), envelope=(pipe, pipe),
+        relative_envelope=(stroke, stroke), period_multiple=1, beat_period=nan, frequencies=(W,), lyapunov=growth,
+        lyapunov_interval=(growth, growth), basin_fraction=1.0, basin_interval=(1.0, 1.0), representative_state=state,
+        from_rest=True, outcome=Outcome.DONE,
+    )  # fmt: skip
+    return AttractorSet((attractor,), W, sigma, {}, 0, 0, 0, Outcome.DONE)

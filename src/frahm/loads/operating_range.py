@@ -1,0 +1,357 @@
+"""The range of operation: every excitation a member can meet, as one object that all verbs take.
+
+Either winds, each with its own shedding frequency and lift, or a window of the excitation frequency at one fixed lift
+(the setting of doi 10.3390/app12147272). Left to itself a case is asked about all winds of its site that excite a mode
+it has: vortices lock in within a band around each natural frequency (`similarity.LOCK_IN_RATIOS`), and an absorber of
+mass ratio mu, however its spring is tuned, splits a resonance at 1 into two at lambda with
+lambda^4 - (2 + mu) lambda^2 + 1 = 0 (Den Hartog, Mechanical Vibrations, section 3.2), so that the band of a mode
+reaches from its lower end times the lower of them to its upper end times the upper one.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from frahm.arrays import Floats
+from frahm.case import Case, Pipe
+from frahm.loads.climate import wind_climate
+from frahm.loads.over_wind import WindExcitation, speed_window, wind_excitation
+from frahm.loads.similarity import LOCK_IN_RATIOS
+from frahm.loads.vortex import vortex_shedding
+
+_KNOTS = 200  # of the lift over the frequency where a table bends it; a cubic between them is exact to about 1e-10
+_SAME = 1e-9  # relative difference below which an end of the range is an end of the site's winds
+_NEAR_ZERO = 0.5  # a window widened below zero frequency ends at this share of its lower end instead
+HALF = 0.5  # what a range is widened by when its worst is put to the test
+
+
+@dataclass(frozen=True, eq=False)
+class OperatingRange:
+    """Excitations over which something is asked; immutable.
+
+    Attributes
+    ----------
+    frequency : (float, float)
+        Lowest and highest excitation frequency Omega [rad/s].
+    reference : float
+        Frequency the detuning counts from [rad/s]; NaN where a system has none.
+    wind : (float, float) or None
+        Wind speeds that shed at the ends [m/s]; None for a window of the frequency at one fixed lift.
+    law : WindExcitation or None
+        Shedding frequency and lift over the wind.
+    lift : float
+        Lift at the wind of the case [N], which `factor` counts from.
+    site : (float, float)
+        Lowest and highest wind that can occur [m/s]; nothing is asked beyond.
+    basis : tuple of str
+        Sentences that say where the ends come from.
+    moves : bool
+        Whether the range was made from the natural frequencies, so that it moves with them.
+    """
+
+    frequency: tuple[float, float]
+    reference: float
+    wind: tuple[float, float] | None = None
+    law: WindExcitation | None = None
+    lift: float = 1.0
+    site: tuple[float, float] = (0.0, math.inf)
+    basis: tuple[str, ...] = ()
+    moves: bool = False
+
+    @property
+    def over_wind(self) -> bool:
+        """Whether shedding frequency and lift follow the wind."""
+        return self.wind is not None
+
+    @property
+    def detuning(self) -> tuple[float, float]:
+        """Lowest and highest detuning sigma = Omega - omega [rad/s]."""
+        return self.frequency[0] - self.reference, self.frequency[1] - self.reference
+
+    @functools.cached_property
+    def factor(self) -> Floats | None:
+        """Lift over `lift` as a function of Omega; None where it is fixed.
+
+        Shape (knots, 5): Omega [rad/s] and the coefficients of a cubic from there on; none where there is no lift.
+        """
+        if self.wind is None or self.law is None:
+            return None
+        return _factor(self.law, self.lift, *self.wind)
+
+    def lift_factor(self, frequency: float) -> float:
+        """Lift over `lift` [-] at Omega [rad/s], by the cubics of `factor`."""
+        rows = self.factor
+        if rows is None:
+            return 1.0
+        if not len(rows):
+            return 0.0
+        row = int(np.clip(np.searchsorted(rows[:, 0], frequency, side="right") - 1, 0, len(rows) - 2))
+        return float(np.polyval(rows[row, :0:-1], frequency - rows[row, 0]))
+
+    def speed(self, frequency: Any) -> Floats:
+        """Wind speed [m/s] that sheds at Omega [rad/s], inside the range; NaN where the lift is fixed."""
+        W = np.asarray(frequency, dtype=float)
+        if self.wind is None or self.law is None:
+            return np.full(W.shape, np.nan)
+        return self.law.speed(np.clip(W, *self.frequency), *self.wind)
+
+    def part(self, lo: float, hi: float) -> OperatingRange:
+        """The part of the range between two frequencies [rad/s]."""
+        ends = max(lo, self.frequency[0]), min(hi, self.frequency[1])
+        if self.wind is None:
+            return replace(self, frequency=ends)
+        speeds = self.speed(np.array(ends))
+        wind = tuple(old if edge == W else float(U)
+                     for old, W, edge, U in zip(self.wind, ends, self.frequency, speeds, strict=True))  # fmt: skip
+        return replace(self, frequency=ends, wind=wind)  # type: ignore[arg-type]
+
+    def widened(self, share: float = HALF) -> OperatingRange:
+        """The range with its width grown by a share, as far as the site and the tables of the case reach."""
+        if self.wind is None or self.law is None:
+            lo, hi = self.frequency
+            more = 0.5 * share * (hi - lo)
+            return replace(self, frequency=(lo - more if lo > more else _NEAR_ZERO * lo, hi + more))
+        lo, hi = self.wind
+        more = 0.5 * share * (hi - lo)
+        least, most = (f(a, b) for f, a, b in zip((max, min), self.site, self.law.speed_range, strict=True))
+        down = max(lo - more if lo > more else _NEAR_ZERO * lo, min(least, lo))
+        up = min(hi + more, max(most, hi))
+        if not self.law.is_monotone(down, lo):
+            down = lo
+        if not self.law.is_monotone(hi, up):
+            up = hi
+        return _over(self.law, self.lift, (down, up), self.reference, self.site, self.basis, self.moves)
+
+    def closed(self, end: int) -> bool:
+        """Whether nothing lies beyond an end (0 or 1), because the site has no such winds."""
+        if self.wind is None:
+            return False
+        beyond = (self.site[0] * (1 + _SAME) >= self.wind[0], self.wind[1] >= self.site[1] * (1 - _SAME))
+        return beyond[end]
+
+    def place(self, frequency: float) -> str:
+        """Where in the range a frequency is, for a sentence."""
+        if self.wind is not None:
+            return f"{float(self.speed(frequency)):.4g} m/s"
+        if math.isnan(self.reference):
+            return f"{frequency:.5g} rad/s"
+        return f"detuning {frequency - self.reference:.4g} rad/s"
+
+    @property
+    def text(self) -> str:
+        """The range in words."""
+        if self.wind is not None:
+            return f"winds of {self.wind[0]:.4g} ... {self.wind[1]:.4g} m/s, each with its own lift"
+        if math.isnan(self.reference):
+            return (
+                f"excitation frequencies of {self.frequency[0]:.5g} ... {self.frequency[1]:.5g} rad/s, one lift for all"
+            )
+        lo, hi = self.detuning
+        return f"detunings of {lo:.4g} ... {hi:.4g} rad/s, one lift for all"
+
+
+def operating_range(case: Case, *, wind: Any = None, most_mass_ratio: float = 0.0) -> OperatingRange:
+    """Range of operation of a case.
+
+    Parameters
+    ----------
+    case : Case
+    wind : (float, float), optional
+        Winds [m/s] in place of those of the case.
+    most_mass_ratio : float
+        Largest mass ratio of absorbers the range must hold [-]; those of the case count anyway.
+
+    Returns
+    -------
+    OperatingRange
+        `wind` or `analysis.wind`; else the window `analysis.detuning` at the lift of `wind.speed`; else all winds that
+        excite a mode, and the wind of the case, as far as the site has them (`wind.range`, or what the climate says).
+
+    Raises
+    ------
+    ParameterError
+        If the bounds do not ascend, lie beyond the tables of Strouhal number and lift coefficient, or the shedding
+        frequency does not ascend between them.
+    """
+    if wind is not None:
+        return _given(case, wind, "wind")
+    if case.analysis.wind is not None:
+        return _given(case, case.analysis.wind, "analysis.wind")
+    omega = case.pipe.frequency
+    if case.analysis.detuning is not None:
+        lo, hi = case.analysis.detuning
+        basis = (f"analysis.detuning asks for the lift of {case.wind.speed:g} m/s at every frequency of the window.",)
+        return OperatingRange((omega + lo, omega + hi), omega, lift=vortex_shedding(case).lift, basis=basis)
+    return _of_the_site(case, most_mass_ratio)
+
+
+def frequency_range(lo: float, hi: float, reference: float = math.nan) -> OperatingRange:
+    """A window of Omega [rad/s] at one fixed lift."""
+    return OperatingRange((lo, hi), reference)
+
+
+def split_resonances(mass_ratio: float) -> tuple[float, float]:
+    """Both resonances of a mode that carries an absorber tuned to it, over its frequency [-].
+
+    Parameters
+    ----------
+    mass_ratio : float
+        mu, mass of the absorber over modal mass [-].
+    """
+    root = math.sqrt(mass_ratio * mass_ratio + 4 * mass_ratio)
+    return math.sqrt((2 + mass_ratio - root) / 2), math.sqrt((2 + mass_ratio + root) / 2)
+
+
+def site_winds(case: Case) -> tuple[tuple[float, float], str]:
+    """Winds the site has [m/s], and the sentence that says so.
+
+    `wind.range`; else the classes of the table of the climate; else up to the largest of as many independent winds as
+    the duration has correlation times, by the Weibull distribution; else no bound.
+    """
+    if case.wind.range is not None:
+        lo, hi = case.wind.range
+        return (lo, hi), f"The site has winds of {lo:g} ... {hi:g} m/s (wind.range)."
+    if case.climate is None:
+        return (0.0, math.inf), "Nothing bounds the winds of the site: give wind.range or a climate."
+    climate = wind_climate(case)
+    if climate.weibull is None:
+        lo, hi = float(climate.edges[0]), float(climate.edges[-1])
+        return (lo, hi), f"The classes of the climate reach from {lo:g} to {hi:g} m/s."
+    count = max(climate.duration / climate.correlation_time, math.e)
+    hi = climate.weibull.scale * math.log(count) ** (1 / climate.weibull.shape)
+    return (0.0, hi), f"The climate's largest wind, exceeded once in its duration, is {hi:.4g} m/s."
+
+
+def _given(case: Case, window: Any, name: str) -> OperatingRange:
+    lo, hi = speed_window(case, window, name)
+    law = wind_excitation(case)
+    if not law.is_monotone(lo, hi):
+        law.speed(1.0, lo, hi)  # refuses, and says why
+    basis = (f"The winds were given: {lo:g} ... {hi:g} m/s.",)
+    return _over(law, vortex_shedding(case).lift, (lo, hi), case.pipe.frequency, (0.0, math.inf), basis, False)
+
+
+def _over(
+    law: WindExcitation, lift: float, wind: tuple[float, float], reference: float, site: tuple[float, float],
+    basis: tuple[str, ...], moves: bool,
+) -> OperatingRange:  # fmt: skip
+    ends = float(law.frequency(wind[0])), float(law.frequency(wind[1]))
+    return OperatingRange(ends, reference, wind, law, lift, site, basis, moves)
+
+
+def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
+    law, (site, about_site) = wind_excitation(case), site_winds(case)
+    bands, speed = excited_bands(case, most_mass_ratio), case.wind.speed
+    elsewhere = any(lo <= float(law.frequency(speed)) <= hi for lo, hi in bands[1:])
+    ends = [float(U) for W in bands[0] for U in law.speeds_of(W)]
+    reached = law.speed_range
+    basis = [_about_band(case, bands[0], elsewhere), about_site]
+    if len(ends) < 2:
+        basis.append(
+            f"Strouhal number and lift are given for {reached[0]:.3g} ... {reached[1]:.3g} m/s only: nothing is known"
+            " beyond."
+        )
+    wanted = ends if ends and elsewhere else [speed, *ends]
+    lo = max(min(wanted), min(site[0], speed), reached[0])
+    hi = min(max(wanted), max(site[1], speed), reached[1])
+    if not lo < hi * (1 - _SAME):
+        hi = max(hi, speed)
+        lo = max(hi * LOCK_IN_RATIOS[0], reached[0], site[0] if site[0] < hi else 0.0)
+        basis.append(f"No wind of the site excites the mode: the strongest are looked at, {lo:.4g} ... {hi:.4g} m/s.")
+    lo, hi, shortened = _ascending(law, lo, hi, min(max(speed, lo), hi))
+    if shortened:
+        basis.append(f"Beyond {lo:.4g} ... {hi:.4g} m/s the shedding frequency falls with the wind: not looked at.")
+    return _over(law, vortex_shedding(case).lift, (lo, hi), case.pipe.frequency, site, tuple(basis), True)
+
+
+def other_modes(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, OperatingRange], ...]:
+    """The other modes of an elastic pipe that winds of its site excite: a case that each governs, and its range.
+
+    Vortices lock in to the mode they excite, so that the lift is in step with it and not with the governing one. Only
+    of a case whose range was left to itself; a range that was given is all that is asked about.
+    """
+    if case.analysis.wind is not None or case.analysis.detuning is not None or isinstance(case.pipe, Pipe):
+        return ()
+    law, (site, _) = wind_excitation(case), site_winds(case)
+    reached, governing = law.speed_range, case.pipe.governing_mode
+    found = []
+    for mode in range(1, case.pipe.modal.count + 1):
+        if mode == governing:
+            continue
+        other = case.with_pipe(governing_mode=mode)
+        band = excited_bands(other, most_mass_ratio * case.pipe.mass / other.pipe.mass)[0]
+        ends = [float(U) for W in band for U in law.speeds_of(W)]
+        lo = max(min(ends, default=math.inf), site[0], reached[0])
+        hi = min(max(ends, default=0.0), site[1], reached[1])
+        if lo < hi * (1 - _SAME) and law.is_monotone(lo, hi):
+            basis = (f"Winds of {lo:.4g} ... {hi:.4g} m/s excite mode {mode}, with the lift in step with it.",)
+            lift = vortex_shedding(other).lift
+            found.append((other, _over(law, lift, (lo, hi), other.pipe.frequency, site, basis, True)))
+    return tuple(found)
+
+
+def excited_bands(case: Case, most_mass_ratio: float = 0.0) -> list[tuple[float, float]]:
+    """Shedding frequencies [rad/s] that can excite each mode, the governing one first, however absorbers are tuned."""
+    modal = case.pipe.modal
+    ratios = np.zeros(modal.count)
+    for absorber in case.absorbers:
+        ratios += absorber.mass * modal.displacement(absorber.position) ** 2 / modal.masses
+    ratios = np.maximum(ratios, most_mass_ratio * modal.masses[0] / modal.masses)
+    low, high = LOCK_IN_RATIOS
+    bands = []
+    for omega, ratio in zip(modal.frequencies, ratios, strict=True):
+        first, second = split_resonances(float(ratio))
+        bands.append((float(omega) * low * first, float(omega) * high * second))
+    return bands
+
+
+def _about_band(case: Case, band: tuple[float, float], elsewhere: bool) -> str:
+    low, high = (edge / case.pipe.frequency for edge in band)
+    also = "" if elsewhere else f", and the wind of the case, {case.wind.speed:g} m/s"
+    return (
+        f"All winds that can excite the governing mode, shedding within {low:.3g} ... {high:.3g} of its frequency"
+        f" (lock-in, and the resonances an absorber splits it into){also}."
+    )
+
+
+def _ascending(law: WindExcitation, lo: float, hi: float, inside: float) -> tuple[float, float, bool]:
+    """The largest stretch of [lo, hi] around a wind inside in which the shedding frequency ascends with the wind."""
+    if law.is_monotone(lo, hi):
+        return lo, hi, False
+    edges = np.unique([lo, hi, *law.kinks(lo, hi)])
+    good = [law.is_monotone(a, b) for a, b in pairwise(edges)]
+    at = int(np.clip(np.searchsorted(edges, inside, side="right") - 1, 0, len(good) - 1))
+    if not good[at]:
+        law.speed(1.0, float(edges[at]), float(edges[at + 1]))  # refuses, and says why
+    first = last = at
+    while first > 0 and good[first - 1] and law.is_monotone(edges[first - 1], edges[last + 1]):
+        first -= 1
+    while last + 1 < len(good) and good[last + 1] and law.is_monotone(edges[first], edges[last + 2]):
+        last += 1
+    return float(edges[first]), float(edges[last + 1]), True
+
+
+def _factor(law: WindExcitation, lift: float, lo: float, hi: float) -> Floats:
+    """Pieces of F_L(Omega)/lift, one cubic between neighbouring knots; smooth between the kinks of the tables."""
+    from scipy.interpolate import CubicHermiteSpline  # takes long to load
+
+    if lift == 0:
+        return np.zeros((0, 5))
+    edges = np.concatenate([[lo], law.kinks(lo, hi), [hi]])
+    rows = []
+    for a, b in pairwise(edges):
+        U = np.linspace(a, b, _KNOTS)
+        inner = np.clip(U, a + 1e-9 * (b - a), b - 1e-9 * (b - a))  # one-sided slopes at the kinks
+        W, slope = law.frequency(U), law.lift_slope(inner) / law.frequency_slope(inner)
+        spline = CubicHermiteSpline(W, law.lift(U) / lift, slope / lift)
+        rows.append(np.column_stack([W[:-1], spline.c[::-1].T]))
+    last = rows[-1][-1]
+    x = W[-1] - last[0]
+    end = [W[-1], np.polyval(last[:0:-1], x), np.polyval(np.polyder(last[:0:-1]), x), 0.0, 0.0]
+    return np.vstack([*rows, end])
