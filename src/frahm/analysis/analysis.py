@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm import __version__
+from frahm.analysis.acceptance import acceptance, judged_limits
 from frahm.analysis.cross_check import cross_check
 from frahm.analysis.fatigue import fatigue
 from frahm.analysis.gusts import gusts
@@ -26,8 +27,9 @@ from frahm.analysis.over_wind import over_wind
 from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import PERIODIC_BELOW
-from frahm.analysis.verdict import largest_motion, verdict
+from frahm.analysis.verdict import largest_motion, lock_in, verdict
 from frahm.analysis.wind import wind
+from frahm.assessment import accepted
 from frahm.case import Case, field_values, load_case
 from frahm.harmonic_balance.branches import GOAL
 from frahm.time_integration.batch import TOLERANCE
@@ -62,10 +64,12 @@ STEPS = (
     Step("motions of the exact equations", motions),
     Step("slow flow against harmonic balance against integration", cross_check),
     Step("attractors at the design wind", attractors),
-    Step("worst case over the window", worst),
+    Step("worst case over the range of operation", worst),
     Step("basins where several motions last", basins),
     Step("fatigue over the wind climate", fatigue),
     Step("largest motion", largest_motion),
+    Step("lock-in", lock_in),
+    Step("acceptance", acceptance),
 )
 
 
@@ -111,6 +115,11 @@ class Analysis:
     def verified(self) -> bool:
         """Whether every check passed and nothing is unverified."""
         return not self.unverified and all(check.status == "pass" for check in self.checks)
+
+    @property
+    def accepted(self) -> bool:
+        """Whether no limit of the case is exceeded; where nothing was judged nothing is."""
+        return bool(self.results.get("acceptance", {}).get("verdict") != "fail")
 
     def summary(self) -> dict[str, Any]:
         """Everything but the arrays, as plain data for strict JSON; numbers that are not finite become None."""
@@ -167,6 +176,7 @@ def _concluded(work: Work, interrupted: bool) -> Analysis:
     results = {"has_absorber": bool(work.case.absorbers), **done.results}
     failed = sum(check.status == FAIL for check in done.checks)
     doubts = len(done.unverified) + sum(check.status == UNVERIFIED for check in done.checks)
+    results["acceptance"] = accepted(judged_limits(work), not failed and not doubts and not interrupted)
     results["verdict"] = verdict(results, failed, doubts)
     results["provenance"] = provenance(work.case)
     return Analysis(

@@ -36,17 +36,18 @@ def cross_check(work: Work) -> Section:
     curve = work.done.data.get("response")
     if curve is None:
         return Section()
-    responses = [response for sigma in _detunings(curve) for response in _stable_responses(work.system, sigma)]
+    responses = [response for sigma in _detunings(curve) for response in _stable_responses(work, sigma)]
     if not responses:
         return Section(unverified=("No stable periodic response was found to start integrations on.",))
     batch = integrate_batch(
         work.system, frequency=np.array([response.frequency for response in responses]),
+        force_scale=np.array([work.range.lift_factor(response.frequency) for response in responses]),
         initial_states=np.array([response.state for response in responses]),
         periods=_PERIODS, window=_WINDOW, tolerance=_TOLERANCE,
     )  # fmt: skip
     theory = None
-    if isinstance(work.slow_flow, SlowFlow) and np.any(work.system.forcing):
-        theory = _theory(work, work.slow_flow, responses)
+    if isinstance(work.theory, SlowFlow) and np.any(work.system.forcing):
+        theory = _theory(work, work.theory, responses)
     table = _table(work.system, responses, batch, theory)
     measured = (_measured(table),) if theory is not None else ()
     return Section(
@@ -68,10 +69,11 @@ def _detunings(curve: xr.Dataset) -> Floats:
     return np.unique(np.concatenate(picked))
 
 
-def _stable_responses(system: System, detuning: float) -> list[PeriodicResponse]:
+def _stable_responses(work: Work, detuning: float) -> list[PeriodicResponse]:
     """Responses no disturbance leaves within the periods integrated; none at an undamped resonance."""
     try:
-        found = periodic_responses(system, detuning=detuning)
+        W = work.system.reference_frequency + detuning
+        found = periodic_responses(work.driven(W), frequency=W)
     except ParameterError:
         return []
     return [response for response in found if abs(response.multipliers[0]) <= 1 + NEUTRAL]

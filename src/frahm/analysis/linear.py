@@ -5,7 +5,7 @@ An undamped resonance is part of it, with an infinite amplitude.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -13,16 +13,17 @@ from scipy.optimize import minimize_scalar
 from frahm.analysis.curve_summary import summary_of
 from frahm.analysis.section import Section, Work
 from frahm.arrays import Complexes, Floats, labelled
+from frahm.assessment import with_stress
+from frahm.attractors import WorstMotion, joined, worst_over
 from frahm.case import Case
-from frahm.harmonic_balance import linear_growth
+from frahm.harmonic_balance import linear_growth, resonant_grid
 from frahm.harmonic_balance.condensation import linear_part
-from frahm.response import ResponseCurve
+from frahm.loads import OperatingRange, other_modes
+from frahm.response import ResponseCurve, with_winds
 from frahm.systems import System, build_system
 
 if TYPE_CHECKING:
     import xarray as xr
-
-_POINTS = 2001
 
 
 def linear_amplitudes(system: System, frequency: Floats) -> Complexes:
@@ -37,10 +38,19 @@ def linear_amplitudes(system: System, frequency: Floats) -> Complexes:
         return np.array([_solved(matrix, system.forcing) for matrix in dynamic])
 
 
-def bare_amplitude(case: Case, frequency: Floats | float) -> Floats:
-    """Amplitude of the pipe without absorbers [m] at Omega [rad/s]; infinite at the resonance without damping."""
-    bare = build_system(case.without_absorbers())
-    return _magnitude(linear_amplitudes(bare, np.atleast_1d(frequency)), bare.output)
+def bare_amplitude(case: Case, frequency: Floats | float, within: OperatingRange | None = None) -> Floats:
+    """Amplitude of the pipe without absorbers [m] at Omega [rad/s]; infinite at the resonance without damping.
+
+    With the lift of the wind of the case, or with that of every wind of a range.
+    """
+    bare, W = build_system(case.without_absorbers()), np.atleast_1d(np.asarray(frequency, dtype=float))
+    return _factors(within, W) * _magnitude(linear_amplitudes(bare, W), bare.output)
+
+
+def _factors(within: OperatingRange | None, frequency: Floats) -> Floats:
+    if within is None or not within.over_wind:
+        return np.ones(frequency.size)
+    return np.array([within.lift_factor(float(W)) for W in frequency])
 
 
 def bare_resonance(case: Case) -> tuple[float, float]:
@@ -70,42 +80,63 @@ def _summit(case: Case, frequency: float) -> float:
 
 
 def without_absorber(work: Work) -> Section:
-    """What the pipe does without absorbers, over the window of detuning."""
-    case = work.case
-    lo, hi = case.analysis.detuning
-    detuning = np.linspace(lo, hi, _POINTS)
-    amplitude = bare_amplitude(case, case.pipe.frequency + detuning)
+    """What the pipe does without absorbers, over the range of operation."""
+    case, within = work.case, work.range
+    bare = build_system(case.without_absorbers())
+    W = resonant_grid(bare, *within.frequency)
+    amplitude = bare_amplitude(case, W, within)
+    found: dict[str, Any] = {}
     peak, frequency = bare_resonance(case)
+    if np.isfinite(peak):
+        worst = bare_worst(work)
+        found = {"worst": worst.row()}
+        if within.over_wind:
+            peak, frequency = worst.pipe_peak, worst.frequency
     results = {
         "pipe_peak_max": peak,
         "frequency": frequency,
         "detuning": frequency - case.pipe.frequency,
+        **found,
     }
     notes = () if np.isfinite(peak) else ("Without damping the bare pipe has no bounded response at resonance.",)
     return Section(
         results={"without_absorber": results},
-        data={"without_absorber": _curve(detuning, case.pipe.frequency, amplitude)},
+        data={"without_absorber": _curve(W, case.pipe.frequency, amplitude, within)},
         notes=notes,
     )
 
 
+def bare_worst(work: Work) -> WorstMotion:
+    """Worst motion without absorbers over the range of operation, every mode that winds of the site excite included."""
+    case = work.case.without_absorbers()
+    parts = [(case, work.range), *((c.without_absorbers(), part) for c, part in others_of(work))]
+    return joined([with_stress(c, worst_over(build_system(c), part, samples=1, min_basin=0.0, seed=1))
+                   for c, part in parts])  # fmt: skip
+
+
+def others_of(work: Work) -> tuple[tuple[Case, OperatingRange], ...]:
+    """The other modes of an elastic pipe that the range of operation includes."""
+    return other_modes(work.case) if work.range.moves else ()
+
+
 def linear_response(work: Work) -> Section:
     """Exact response of a linear system over the window: there is one response, and no other motion lasts."""
-    system, case = work.system, work.case
-    lo, hi = case.analysis.detuning
-    detuning = np.linspace(lo, hi, _POINTS)
-    X = linear_amplitudes(system, system.reference_frequency + detuning)
-    pipe = _magnitude(X, system.output)
-    relative = _magnitude(X, system.elements[0].direction if system.elements else np.zeros(system.size))
-    growth, none = linear_growth(system), np.zeros(_POINTS, dtype=int)
+    system, within = work.system, work.range
+    W = resonant_grid(system, *within.frequency)
+    detuning = W - system.reference_frequency
+    X, factors = linear_amplitudes(system, W), _factors(within, W)
+    pipe = factors * _magnitude(X, system.output)
+    relative = factors * _magnitude(X, system.elements[0].direction if system.elements else np.zeros(system.size))
+    growth, none = linear_growth(system), np.zeros(W.size, dtype=int)
     inventory = "All laws of the case are linear: the response is exact, and the only one."
     curve = ResponseCurve(
-        frequency=system.reference_frequency + detuning, detuning=detuning, pipe_amplitude=pipe,
+        frequency=W, detuning=detuning, pipe_amplitude=pipe,
         relative_amplitude=relative, pipe_peak=pipe, relative_peak=relative, branch=none, piece=none,
-        stable=np.full(_POINTS, growth < 0), growth_rate=np.full(_POINTS, growth), detached=(False,),
+        stable=np.full(W.size, growth < 0), growth_rate=np.full(W.size, growth), detached=(False,),
         asymmetric=(False,), special_points=(), unverified=(), system=system.name,
         settings={"method": "harmonic-balance", "harmonics": 1, "inventory": inventory},
     )  # fmt: skip
+    curve = with_winds(curve, within) if within.over_wind else curve
     found = summary_of(curve) | {"inventory": inventory, "harmonics": 1, "growth_rate": growth}
     data = curve.to_dataset() if system.elements else _without_stroke(curve)
     doubt = () if growth < 0 else (f"The linear response does not attract: the growth rate is {growth:.3g} 1/s.",)
@@ -122,14 +153,16 @@ def _without_stroke(curve: ResponseCurve) -> xr.Dataset:
     return curve.to_dataset().drop_vars(["relative_amplitude", "relative_peak", "special_relative_peak"])
 
 
-def _curve(detuning: Floats, reference: float, pipe: Floats) -> xr.Dataset:
+def _curve(W: Floats, reference: float, pipe: Floats, within: OperatingRange) -> xr.Dataset:
     import xarray as xr
 
+    wind = {"wind_speed": labelled("point", within.speed(W), "wind speed U", "m/s")} if within.over_wind else {}
     return xr.Dataset(
         {
-            "frequency": labelled("point", reference + detuning, "excitation frequency Omega", "rad/s"),
-            "detuning": labelled("point", detuning, "detuning sigma = Omega - omega", "rad/s"),
+            "frequency": labelled("point", W, "excitation frequency Omega", "rad/s"),
+            "detuning": labelled("point", W - reference, "detuning sigma = Omega - omega", "rad/s"),
             "pipe_peak": labelled("point", pipe, "largest pipe displacement over a period", "m"),
+            **wind,
         }
     )
 

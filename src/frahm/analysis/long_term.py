@@ -1,4 +1,4 @@
-"""Steps `attractors` and `worst`: every long-term motion at the design wind, and the worst of them over the window."""
+"""Steps `attractors` and `worst`: every lasting motion at the design wind, and the worst over the range."""
 
 from __future__ import annotations
 
@@ -6,13 +6,16 @@ from typing import Any
 
 import numpy as np
 
+from frahm.analysis.linear import others_of
 from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
-from frahm.attractors import Attractor, find_attractors, worst_case
+from frahm.assessment import with_stress
+from frahm.attractors import Attractor, WorstCase, WorstMotion, find_attractors, joined, worst_over
+from frahm.case import Case
 from frahm.errors import ParameterError
 from frahm.harmonic_balance import is_linear
 from frahm.loads import vortex_shedding
+from frahm.systems import build_system
 
-_WORST_SAMPLES = 60
 _SETTLED = "Motions from sampled states settle on an attractor"
 
 
@@ -38,34 +41,51 @@ def attractors(work: Work) -> Section:
 
 
 def worst(work: Work) -> Section:
-    """The largest pipe peak of any attractor over the window of the detuning."""
-    if not _nonlinear(work):
-        return Section()
+    """The worst lasting motion over the range of operation: every attractor met, however small its basin."""
     settings = work.case.analysis
+    parts: list[WorstCase] = []
+    motions: list[WorstMotion] = []
     try:
-        found = worst_case(
-            work.system, detuning=settings.detuning, samples=min(_WORST_SAMPLES, settings.samples), seed=settings.seed
-        )
+        for case, within in ((work.case, work.range), *others_of(work)):
+            part = worst_over(build_system(case), within, samples=settings.samples, min_basin=0.0, seed=settings.seed)
+            parts.append(part)
+            motions.append(with_stress(case, part))
     except ParameterError as refused:
-        return Section(notes=(f"The worst case over the window was not searched: {refused}",))
-    return Section(
-        results={
-            "worst_case": {
-                "pipe_peak": found.pipe_peak,
-                "detuning": found.detuning,
-                "kind": found.attractor.kind,
-                "relative_peak": found.relative_peak,
-                "relative_detuning": found.relative_detuning,
-                "basin_fraction": found.attractor.basin_fraction,
-                "min_basin": found.min_basin,
-                "not_excluded": found.not_excluded,
-                "frequencies_searched": len(found.surveys),
-                "verified": found.verified,
-            },
-            "coexisting": [_row(attractor) for survey in found.surveys if len(survey) > 1 for attractor in survey],
-        },
-        unverified=found.unverified,
+        return Section(unverified=(f"The worst case over the range of operation was not found: {refused}",))
+    motion, first = joined(motions), parts[0]
+    reference = motion.frequency - motion.detuning
+    row = motion.row() | {
+        "relative_detuning": motion.relative_frequency - reference,
+        "min_basin": first.min_basin,
+        "not_excluded": max(part.not_excluded for part in parts),
+    }
+    modes = [_mode_row(case, m) for (case, _), m in zip(others_of(work), motions[1:], strict=True)]
+    several = (
+        []
+        if motion.tier == "exact linear response"
+        else [_row(attractor) for survey in first.surveys if len(survey) > 1 for attractor in survey]
     )
+    return Section(
+        results={"range": _range_row(work), "worst_case": row, "other_modes": modes, "coexisting": several},
+        unverified=motion.unverified,
+        notes=work.range.basis,
+    )
+
+
+def _range_row(work: Work) -> dict[str, Any]:
+    """The range of operation as plain data."""
+    within = work.range
+    return {
+        "text": within.text,
+        "wind": None if within.wind is None else list(within.wind),
+        "frequency": list(within.frequency),
+        "detuning": list(within.detuning),
+        "basis": list(within.basis),
+    }
+
+
+def _mode_row(case: Case, motion: WorstMotion) -> dict[str, Any]:
+    return {"mode": case.pipe.governing_mode, "natural_frequency": case.pipe.frequency, **motion.row()}  # type: ignore[union-attr]
 
 
 def _nonlinear(work: Work) -> bool:

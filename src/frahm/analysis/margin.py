@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from itertools import pairwise
 from typing import Any
@@ -10,10 +11,13 @@ import numpy as np
 
 from frahm.analysis.section import Section, Work
 from frahm.harmonic_balance import is_linear
-from frahm.response import DetachedCurveEvent, detached_curve_events, frequency_response
+from frahm.response import DetachedCurveEvent, ResponseCurve, detached_curve_events
+from frahm.response.exact import exact_curve
 from frahm.systems import with_parameters
 
 UPWARD, DOWNWARD = (1.0, 1.6, 3.0), (1.0, 0.5, 0.2)  # factors on the force: the search ends with the first find
+_LADDER = (1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 2.5, 3.0)  # factors asked in turn where the lift follows the wind
+_BIRTH = 1e-3  # relative width to which a birth is bisected
 _SLICES = 4
 _MOST_SADDLE_NODES = 16
 _MOST_SECONDS = 30.0
@@ -30,6 +34,8 @@ def detached_curve_margin(work: Work) -> Section:
         why = f"The response has {folds} saddle-nodes, more than can be followed over the force in reasonable time:"
         return Section(notes=(f"{why} births and merges of detached curves were not searched.",))
     exists = any(branch["detached"] and not branch["asymmetric"] for branch in curve["branches"])
+    if work.range.over_wind:
+        return _over_the_winds(work, curve, exists)
     end = time.monotonic() + _MOST_SECONDS
     above, highest = _searched(work, UPWARD, end)
     below, lowest = _searched(work, DOWNWARD, end) if exists else ([], 1.0)
@@ -49,13 +55,58 @@ def detached_curve_margin(work: Work) -> Section:
     )
 
 
+def _over_the_winds(work: Work, curve: dict[str, Any], exists: bool) -> Section:
+    """The same where the lift follows the wind: the curve itself is asked at more and more force, and then bisected."""
+    free, taken, events = 1.0, math.nan, []
+    if not exists:
+        for force in _LADDER:
+            if _detached_count(work, force):
+                taken = force
+                break
+            free = force
+        while math.isfinite(taken) and taken - free > _BIRTH * taken:
+            middle = 0.5 * (free + taken)
+            free, taken = (free, middle) if not _detached_count(work, middle) else (middle, taken)
+        if math.isfinite(taken):
+            events = [_born(work, taken)]
+    found = {
+        "exists": exists,
+        "next_event": events[0] if events else None,
+        "born": None,
+        "searched": [1.0, taken if events else free],
+    }
+    return Section(results={"response": {"harmonic-balance": curve | {"detached_curve_margin": found}}})
+
+
+def _born(work: Work, force: float) -> dict[str, Any]:
+    """Where the detached curve is that a factor on the force has made appear."""
+    curve = _curve(work, force)
+    new = next(branch for branch in curve.branches if branch.detached and not branch.asymmetric)
+    at = int(np.argmax(new.pipe_peak))
+    return {
+        "kind": "birth",
+        "change": "appears",
+        "force": force,
+        "frequency": float(new.frequency[at]),
+        "detuning": float(new.detuning[at]),
+        "wind_speed": float(work.range.speed(new.frequency[at])),
+        "pipe_peak": float(new.pipe_peak[at]),
+        "relative_peak": float(new.relative_peak[at]),
+    }
+
+
+def _curve(work: Work, force: float) -> ResponseCurve:
+    driven = with_parameters(work.system, force=force)
+    return exact_curve(driven, *work.range.frequency, None, work.range.factor)
+
+
 def _searched(work: Work, edges: tuple[float, ...], end: float) -> tuple[list[DetachedCurveEvent], float]:
     """Events in the first stretch of force factors that has any, and the factor up to which was searched."""
     reached = edges[0]
     for near, far in pairwise(edges):
         if time.monotonic() > end:
             return [], reached
-        bounds, window = (min(near, far), max(near, far)), work.case.analysis.detuning
+        bounds, window = (min(near, far), max(near, far)), work.range.detuning
         events = detached_curve_events(work.system, "force", bounds, detuning=window, slices=_SLICES)
         reached = far
         if events:
@@ -87,8 +138,7 @@ def _change(work: Work, event: DetachedCurveEvent) -> str:
 
 
 def _detached_count(work: Work, force: float) -> int:
-    curve = frequency_response(with_parameters(work.system, force=force), detuning=work.case.analysis.detuning)
-    return sum(branch.detached and not branch.asymmetric for branch in curve.branches)
+    return sum(branch.detached and not branch.asymmetric for branch in _curve(work, force).branches)
 
 
 def margin_sentence(margin: dict[str, Any] | None) -> str:
@@ -121,4 +171,6 @@ def _increase(force: float) -> str:
 
 
 def _sigma(event: dict[str, Any]) -> str:
+    if math.isfinite(event.get("wind_speed", math.nan)):
+        return f"{event['detuning']:.3g} rad/s ({event['wind_speed']:.4g} m/s)"
     return f"{event['detuning']:.3g} rad/s"

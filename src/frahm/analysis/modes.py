@@ -13,7 +13,8 @@ from frahm.case import Case, Tube
 from frahm.errors import ParameterError
 from frahm.harmonic_balance import PeriodicResponse, is_linear
 from frahm.loads import vortex_shedding
-from frahm.response import frequency_response, periodic_responses
+from frahm.response import periodic_responses
+from frahm.response.exact import exact_curve
 from frahm.structure import ModalPipe
 from frahm.structure.modes import MOST_MODES
 from frahm.systems import build_system, stress_row
@@ -35,7 +36,10 @@ def modes(work: Work) -> Section:
         results={"modes": {"governing": case.pipe.governing_mode, "modes": _rows(case, modal)}},  # type: ignore[union-attr]
         data={"modes": case.pipe.beam_modes.to_dataset() if isinstance(case.pipe, Tube) else _table(modal)},
         checks=tuple(check for check, _ in checks),
-        unverified=(*_other_mode(case, modal), *(doubt for _, doubts in checks for doubt in doubts)),
+        unverified=(
+            *(() if work.range.moves else _other_mode(work, modal)),
+            *(doubt for _, doubts in checks for doubt in doubts),
+        ),
         notes=(_about_lift(case, modal),),
     )
 
@@ -85,9 +89,11 @@ def _about_lift(case: Case, modal: ModalPipe) -> str:
     )
 
 
-def _other_mode(case: Case, modal: ModalPipe) -> tuple[str, ...]:
+def _other_mode(work: Work, modal: ModalPipe) -> tuple[str, ...]:
     """What is not looked at when the wind is nearer to another mode than to the governing one."""
-    shedding = vortex_shedding(case).frequency
+    if work.range.moves:  # every mode is looked at with a lift of its own
+        return ()
+    shedding = vortex_shedding(work.case).frequency
     nearest = int(np.argmin(np.abs(np.log(modal.frequencies / shedding))))
     if nearest == 0:
         return ()
@@ -108,7 +114,7 @@ def _convergence(work: Work) -> tuple[Check, tuple[str, ...]]:
     if "response" in work.done.data and not is_linear(work.system):
         curve = work.done.data["response"]
         largest = _largest(curve["pipe_peak"].values, curve["stable"].values.astype(bool))
-        other = frequency_response(build_system(finer), detuning=case.analysis.detuning)
+        other = exact_curve(build_system(finer), *work.range.frequency, None, work.range.factor)
         changes["largest stable pipe peak"] = _change(largest, _largest(other.pipe_peak, other.stable))
     stresses = [_stress_at_the_wind(c) for c in (case, finer)]
     if None not in stresses:

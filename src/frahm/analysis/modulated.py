@@ -19,11 +19,11 @@ _AGREES = 0.1  # relative difference of the largest pipe displacement
 
 def modulated(work: Work) -> Section:
     """Modulated responses of the slow flow as branches over the detuning, and where they coexist with periodic ones."""
-    slow = work.slow_flow
+    slow = work.theory
     if isinstance(slow, str) or not slow.force:
         return Section()
     settings = work.case.analysis
-    curve = modulated_branches(work.system, detuning=settings.detuning, form=settings.form, looks=_LOOKS)
+    curve = modulated_branches(work.system, detuning=work.range.detuning, form=settings.form, looks=_LOOKS)
     return Section(
         results={
             "modulated": {
@@ -63,7 +63,8 @@ def basins(work: Work) -> Section:
     if detuning is None:
         return Section()
     try:
-        data = basin_map(work.system, detuning=detuning, resolution=_RESOLUTION)
+        W = work.system.reference_frequency + detuning
+        data = basin_map(work.driven(W), frequency=W, resolution=_RESOLUTION)
     except ParameterError as refused:
         return Section(notes=(f"The basins at the detuning {detuning:.4g} rad/s were not mapped: {refused}",))
     return Section(results={"basin_map": {"detuning": detuning}}, data={"basin_map": data})

@@ -89,10 +89,11 @@ def _left_out(points: list[PointOfInterest]) -> Iterable[str]:
 
 
 def _motion(work: Work, point: PointOfInterest) -> Motion:
-    history, start = _followed(work.system, point.detuning, work.case.analysis.periods)
+    system = work.driven(work.system.reference_frequency + point.detuning)
+    history, start = _followed(system, point.detuning, work.case.analysis.periods)
     tail = history.last(max(1, math.floor(_TAIL * history.periods)))
     kind, spread = judge(history)
-    bare = float(bare_amplitude(work.case, history.frequency)[0])
+    bare = float(bare_amplitude(work.case, history.frequency, work.range)[0])
     return Motion(point, history, tail, start, kind, spread, bare)
 
 
@@ -115,6 +116,7 @@ def _summary(motion: Motion) -> dict[str, Any]:
         "reason": motion.point.reason,
         "detuning": motion.point.detuning,
         "frequency": motion.history.frequency,
+        "wind_speed": motion.point.wind_speed,
         "kind": motion.kind,
         "pipe_peak": peaks.pipe,
         "relative_peak": peaks.relative,

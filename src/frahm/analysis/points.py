@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,11 +17,12 @@ _SAME = 1e-4  # of the natural frequency: detunings closer than this are one poi
 
 @dataclass(frozen=True)
 class PointOfInterest:
-    """A detuning [rad/s], a short key for files, and why it matters."""
+    """A detuning [rad/s], a short key for files, why it matters, and the wind [m/s] that sheds there."""
 
     key: str
     reason: str
     detuning: float
+    wind_speed: float = math.nan
 
 
 def points_of_interest(work: Work) -> list[PointOfInterest]:
@@ -29,18 +31,21 @@ def points_of_interest(work: Work) -> list[PointOfInterest]:
     for new in _candidates(work):
         for i, old in enumerate(points):
             if abs(old.detuning - new.detuning) < _SAME * work.case.pipe.frequency:
-                points[i] = PointOfInterest(old.key, f"{old.reason}; {new.reason}", old.detuning)
+                points[i] = replace(old, reason=f"{old.reason}; {new.reason}")
                 break
         else:
             points.append(new)
-    return points
+    speeds = work.range.speed(work.case.pipe.frequency + np.array([point.detuning for point in points]))
+    return [replace(point, wind_speed=float(speed)) for point, speed in zip(points, speeds, strict=True)]
 
 
 def _candidates(work: Work) -> Iterator[PointOfInterest]:
     case = work.case
     speed = f"{case.wind.speed:.4g} m/s"
     yield PointOfInterest("design-wind", f"shedding frequency at {speed}", vortex_shedding(case).detuning)
-    yield PointOfInterest("resonance", "natural frequency of the pipe", 0.0)
+    lo, hi = work.range.detuning
+    if not work.range.over_wind or lo <= 0 <= hi:
+        yield PointOfInterest("resonance", "natural frequency of the pipe", 0.0)
     if "response" not in work.done.data:
         return
     curve = work.done.data["response"]

@@ -18,7 +18,7 @@ def exact_response(work: Work) -> Section:
     if is_linear(work.system):
         return linear_response(work)
     try:
-        curve = frequency_response(work.system, detuning=work.case.analysis.detuning)
+        curve = frequency_response(work.case)
     except ParameterError as error:
         return Section(unverified=(f"The exact response over frequency was not computed. {error}",))
     settings = {"inventory": curve.settings["inventory"], "harmonics": curve.settings["harmonics"]}
@@ -33,8 +33,9 @@ def exact_response(work: Work) -> Section:
 
 def slow_flow_response(work: Work) -> Section:
     """Every branch of the slow flow of one mode with one cubic sink: the theory beside the exact response."""
-    if isinstance(work.slow_flow, str):
-        return Section(notes=(f"No slow flow and no slow manifold: {work.slow_flow}",) if work.case.absorbers else ())
+    if isinstance(work.theory, str):
+        both = " and no slow manifold" if isinstance(work.slow_flow, str) else ""
+        return Section(notes=(f"No slow flow{both}: {work.theory}",) if work.case.absorbers else ())
     analysis = work.case.analysis
     try:
         curve = frequency_response(

@@ -6,8 +6,10 @@ import functools
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from frahm.attractors import driven_at
 from frahm.case import Case
 from frahm.errors import ParameterError
+from frahm.loads import OperatingRange, operating_range
 from frahm.slow_flow import SlowFlow, slow_flow_of
 from frahm.systems import System, build_system
 
@@ -80,6 +82,22 @@ class Work:
     def system(self) -> System:
         """Equations of motion of the case."""
         return build_system(self.case)
+
+    @functools.cached_property
+    def range(self) -> OperatingRange:
+        """Range of operation of the case."""
+        return operating_range(self.case)
+
+    def driven(self, frequency: float) -> System:
+        """The system as the wind drives it at Omega = `frequency` [rad/s]."""
+        return driven_at(self.system, self.range)(frequency)
+
+    @functools.cached_property
+    def theory(self) -> SlowFlow | str:
+        """Slow flow of the case over its range, or the sentence that says why it does not apply."""
+        if self.range.over_wind and not isinstance(self.slow_flow, str):
+            return "It knows one lift for all frequencies, and here the lift follows the wind."
+        return self.slow_flow
 
     @functools.cached_property
     def slow_flow(self) -> SlowFlow | str:

@@ -1,4 +1,4 @@
-"""Steps `largest_motion` and `verdict`: the largest motion found, and what it all comes to in a few sentences."""
+"""Steps `largest_motion` and `lock_in`, and the verdict: what it all comes to in a few sentences."""
 
 from __future__ import annotations
 
@@ -7,12 +7,18 @@ from typing import Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.analysis.margin import margin_sentence
-from frahm.analysis.section import Section, Work
+from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
+from frahm.loads import lock_in_band
+
+_SAME = 1.01  # a motion larger by less is as large
+FIXED_LIFT = "The fixed lift is not exceeded by the winds of its window"
 
 
 def largest_motion(work: Work) -> Section:
-    """The largest pipe displacement among the stable responses and the integrated motions."""
+    """The one worst motion: that of the search, or what another step met that is larger still."""
+    worst = work.done.results.get("worst_case")
     candidates = [*_from_motions(work), *_from_response(work), *_from_worst_case(work)]
     if not candidates:
         return Section()
@@ -20,17 +26,34 @@ def largest_motion(work: Work) -> Section:
     bare = work.done.results["without_absorber"]["pipe_peak_max"]
     ratio = largest["pipe_peak"] / bare if math.isfinite(bare) and bare > 0 else None
     stroke = max((c["relative_peak"] for c in candidates if c["relative_peak"] is not None), default=None)
-    return Section(
-        results={"largest_motion": {**largest, "ratio_to_no_absorber": ratio, "stroke": stroke}},
-        notes=_at_the_edge(work, largest["detuning"]),
-    )
+    found: dict[str, Any] = {"largest_motion": {**largest, "ratio_to_no_absorber": ratio, "stroke": stroke}}
+    doubts: tuple[str, ...] = ()
+    if worst is not None:
+        found["worst_case"] = {name: largest[name] for name in ("pipe_peak", "detuning", "wind_speed", "kind")}
+        found["worst_case"]["frequency"] = work.case.pipe.frequency + largest["detuning"]
+        found["worst_case"]["relative_peak"] = max(stroke or 0.0, worst["relative_peak"])
+        if largest["pipe_peak"] > _SAME * worst["pipe_peak"]:
+            doubts = (f"The search for the worst case missed a motion of {readable.length(largest['pipe_peak'])}"
+                      f" ({largest['source']}).",)  # fmt: skip
+            found["worst_case"]["verified"] = False
+    checks = _fixed_lift(work, largest["pipe_peak"])
+    return Section(results=found, checks=checks, unverified=doubts)
 
 
-def _at_the_edge(work: Work, detuning: float) -> tuple[str, ...]:
-    lo, hi = work.case.analysis.detuning
-    if min(abs(detuning - lo), abs(detuning - hi)) > 1e-3 * (hi - lo):
+def _fixed_lift(work: Work, worst: float) -> tuple[Check, ...]:
+    """Where a case asks for one lift over a window: whether the winds that shed there do not move the pipe more."""
+    over = work.done.results.get("response_over_wind")
+    if work.range.over_wind or over is None:
         return ()
-    return ("The largest motion lies at the edge of the window: beyond analysis.detuning it may be larger.",)
+    peak, speed = over["pipe_peak_max_with"], over["wind_speed_with"]
+    detail = (
+        f"Over the winds that shed in the window, each with its own lift, the largest stable response is"
+        f" {readable.length(peak)} (at {readable.speed(speed)}), against {readable.length(worst)} with the lift of"
+        f" {readable.speed(work.case.wind.speed)} at every frequency."
+    )
+    good = not peak > _SAME * worst
+    hint = "" if good else " Leave out analysis.detuning, so that the lift follows the wind."
+    return (Check(FIXED_LIFT, PASS if good else UNVERIFIED, detail + hint),)
 
 
 def _from_motions(work: Work) -> list[dict[str, Any]]:
@@ -39,6 +62,7 @@ def _from_motions(work: Work) -> list[dict[str, Any]]:
             "pipe_peak": motion["pipe_peak"],
             "relative_peak": motion["relative_peak"] if work.system.elements else None,
             "detuning": motion["detuning"],
+            "wind_speed": motion["wind_speed"],
             "kind": motion["kind"],
             "source": "integration from rest",
         }
@@ -52,8 +76,8 @@ def _from_worst_case(work: Work) -> list[dict[str, Any]]:
     if found is None or not math.isfinite(found["pipe_peak"]):
         return []
     kind = "modulated" if found["kind"] == "quasi-periodic" else found["kind"]
-    row = {"pipe_peak": found["pipe_peak"], "relative_peak": found["relative_peak"], "detuning": found["detuning"]}
-    return [{**row, "kind": kind, "source": "search for attractors"}]
+    row = {name: found[name] for name in ("pipe_peak", "relative_peak", "detuning", "wind_speed")}
+    return [{**row, "kind": kind, "source": found["tier"]}]
 
 
 def _from_response(work: Work) -> list[dict[str, Any]]:
@@ -69,6 +93,7 @@ def _from_response(work: Work) -> list[dict[str, Any]]:
             "pipe_peak": float(curve["pipe_peak"].values[i]),
             "relative_peak": float(curve["relative_peak"].values[i]) if "relative_peak" in curve else None,
             "detuning": float(curve["detuning"].values[i]),
+            "wind_speed": float(curve["wind_speed"].values[i]) if "wind_speed" in curve else math.nan,
             "kind": "periodic",
             "source": "stable response by harmonic balance",
         }
@@ -77,10 +102,11 @@ def _from_response(work: Work) -> list[dict[str, Any]]:
 
 
 def verdict(results: dict[str, Any], failed: int, unverified: int) -> str:
-    """What the results come to, in two or three sentences."""
+    """What the results come to, in a few sentences."""
     sentences = [
+        *_about_acceptance(results),
         *_about_largest(results),
-        *_about_design_wind(results),
+        *_about_lock_in(results),
         *_about_detached(results),
         *_about_fatigue(results),
     ]
@@ -91,13 +117,19 @@ def verdict(results: dict[str, Any], failed: int, unverified: int) -> str:
     return " ".join(sentences) or "Nothing was finished."
 
 
+def _about_acceptance(results: dict[str, Any]) -> list[str]:
+    found = results.get("acceptance", {})
+    return [found["sentence"]] if found.get("rows") else []
+
+
 def _about_largest(results: dict[str, Any]) -> list[str]:
     largest = results.get("largest_motion")
     if largest is None:
         return []
+    over = results.get("range", {}).get("text", "the window")
     text = (
-        f"The largest pipe motion found, transients aside, is {_length(largest['pipe_peak'])} "
-        f"({largest['kind']}, at detuning {largest['detuning']:.3g} rad/s)"
+        f"Over {over}, the largest pipe motion found, transients aside, is {readable.length(largest['pipe_peak'])} "
+        f"({largest['kind']}, {_place(largest)})"
     )
     if not results["has_absorber"]:
         return [text + "; there is no absorber."]
@@ -106,21 +138,47 @@ def _about_largest(results: dict[str, Any]) -> list[str]:
     if ratio is None:
         why = "there is no lift" if bare == 0 else "without an absorber no damping bounds the resonance"
         return [f"{text}; {why}."]
-    return [text + f": {_share(ratio)} of the {_length(bare)} at resonance without an absorber."]
+    return [text + f": {readable.share(ratio)} of the {readable.length(bare)} at resonance without an absorber."]
 
 
-def _about_design_wind(results: dict[str, Any]) -> list[str]:
-    if not results.get("motions") or not results["has_absorber"]:
+def _place(found: dict[str, Any]) -> str:
+    """Where a motion is, for a sentence."""
+    speed = found.get("wind_speed")
+    if speed is not None and math.isfinite(speed):
+        return f"at {readable.speed(speed)}"
+    return f"at detuning {found['detuning']:.3g} rad/s"
+
+
+def lock_in(work: Work) -> Section:
+    """The motion at the design wind beside the resonant one, and which of them counts."""
+    motions, worst = work.done.results.get("motions"), work.done.results.get("worst_case")
+    if not motions or worst is None:
+        return Section()
+    band, speed, here = lock_in_band(work.case), work.case.wind.speed, motions[0]
+    inside = bool(band.low <= speed <= band.high)
+    return Section(results={"lock_in": {
+        "design_wind": speed, "band": [band.low, band.high], "standing": band.standing, "inside": inside,
+        "at_design_wind": here["pipe_peak"], "kind": here["kind"],
+        "at_design_wind_without_absorber": here["pipe_peak_without_absorber"],
+        "resonant": worst["pipe_peak"], "counted": worst["pipe_peak"] if inside else here["pipe_peak"],
+    }})  # fmt: skip
+
+
+def _about_lock_in(results: dict[str, Any]) -> list[str]:
+    found = results.get("lock_in")
+    if found is None or found["at_design_wind"] is None or not math.isfinite(found["at_design_wind"]):
         return []
-    motion = results["motions"][0]
-    peak, bare = motion["pipe_peak"], motion["pipe_peak_without_absorber"]
-    if peak is None or not math.isfinite(peak):
-        return []
-    text = (
-        f"At the design wind (detuning {motion['detuning']:.3g} rad/s) the pipe, started at rest, moves {_length(peak)}"
-    )
-    against = f", against {_length(bare)} without an absorber" if bare is not None and math.isfinite(bare) else ""
-    return [f"{text}{against} ({motion['kind']})."]
+    low, high = found["band"]
+    band = f"the winds in which codes expect lock-in, {low:.3g} ... {high:.3g} m/s ({found['standing']})"
+    bare = found["at_design_wind_without_absorber"]
+    against = ""
+    if results["has_absorber"] and bare is not None and math.isfinite(bare):
+        against = f", {readable.length(bare)} without an absorber"
+    moves = f"the pipe, started at rest, moves {readable.length(found['at_design_wind'])} ({found['kind']}{against})"
+    if not found["inside"]:
+        return [f"At the design wind of {readable.speed(found['design_wind'])}, outside {band}, {moves}."]
+    text = f"The design wind of {readable.speed(found['design_wind'])} is one of {band}: the resonant motion counts"
+    return [f"{text}, {readable.length(found['resonant'])}; without lock-in {moves}."]
 
 
 def _about_detached(results: dict[str, Any]) -> list[str]:
@@ -136,21 +194,13 @@ def _about_fatigue(results: dict[str, Any]) -> list[str]:
     years, factor = found["duration_years"], found["design_fatigue_factor"]
     used, bare = found["utilisation_with"], found["utilisation_without"]
     times = f" times the design fatigue factor {factor:g}" if factor != 1 else ""
-    text = f"The fatigue damage of {years:.3g} years{times} is {used:.2g}"
+    text = f"The fatigue damage of {readable.duration(years * readable.YEAR)}{times} is {used:.2g}"
     if results["has_absorber"]:
         text += f" with the worst motion at every wind, {bare:.2g} without absorbers"
     if not used <= 1:
         return [f"{text}; that is more than 1."]
     held = factor * found["locked_in_with"]
     return [f"{text}; {held:.2g} if the shedding locked in over the whole lock-in band at the worst of it."]
-
-
-def _length(value: float) -> str:
-    return f"{value:#.3g} m"
-
-
-def _share(ratio: float) -> str:
-    return f"{ratio:.0%}" if ratio < 10 else f"{ratio:.0f} times"
 
 
 def _count(number: int, what: str) -> str:

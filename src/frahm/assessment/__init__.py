@@ -1,19 +1,26 @@
 """Room `assessment`: stress histories, cycles and fatigue damage over the attractors and the wind climate."""
 
+from frahm.assessment.acceptance import Utilisation, accepted, utilisations
 from frahm.assessment.closed_forms import constant_range_damage, weibull_damage
 from frahm.assessment.damage import FatigueDamage
 from frahm.assessment.fatigue import fatigue_damage
 from frahm.assessment.rainflow_cycles import CONVENTION, Cycles, rainflow_cycles, turning_points
 from frahm.assessment.spring_fatigue import transverse_spring_cycles
+from frahm.assessment.worst_stress import stress_places, with_stress
 
 __all__ = [
     "CONVENTION",
     "Cycles",
     "FatigueDamage",
+    "Utilisation",
+    "accepted",
     "constant_range_damage",
     "fatigue_damage",
     "rainflow_cycles",
+    "stress_places",
     "transverse_spring_cycles",
     "turning_points",
+    "utilisations",
     "weibull_damage",
+    "with_stress",
 ]

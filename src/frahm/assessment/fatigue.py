@@ -21,6 +21,7 @@ from frahm.harmonic_balance import is_linear
 from frahm.loads import (
     WindClimate,
     lock_in_band,
+    operating_range,
     persistence,
     speed_window,
     wind_climate,
@@ -61,8 +62,8 @@ def fatigue_damage(
     bins : int, optional
         Wind bins; `fatigue.bins` of the case by default.
     wind : tuple of float, optional
-        Band (lo, hi) of wind speeds [m/s]; by default `fatigue.wind_speeds`, or the winds that shed inside the window
-        of detuning of the case.
+        Band (lo, hi) of wind speeds [m/s]; by default `fatigue.wind_speeds`, or the winds of the range of operation
+        of the case.
     samples : int, optional
         Initial states in the search for attractors at every wind; `fatigue.samples` by default.
     seed : int, optional
@@ -117,15 +118,17 @@ def _seen(progress: Progress | None, count: int) -> Callable[[int], None] | None
 
 
 def counted_band(case: Case, given: tuple[float, float] | None = None) -> tuple[float, float]:
-    """Wind speeds that are counted [m/s]: those given, those of the case, or those that shed inside its window."""
-    excitation = wind_excitation(case)
+    """Wind speeds that are counted [m/s]: those given, those of the case, or those of its range of operation."""
     if given is None and case.fatigue is not None:
         given = case.fatigue.wind_speeds
     if given is not None:
         return speed_window(case, given)
+    within = operating_range(case)
+    if within.wind is not None:
+        return within.wind
+    excitation = wind_excitation(case)
     low, high = max(excitation.speed_range[0], _CALM), min(excitation.speed_range[1], _STORM)
-    wanted = case.pipe.frequency + np.array(case.analysis.detuning)
-    found = excitation.speed(wanted, low, high)
+    found = excitation.speed(np.array(within.frequency), low, high)
     ends = np.where(np.isnan(found), [low, high], found)
     return speed_window(case, (float(ends[0]), float(ends[1])))
 

@@ -6,8 +6,8 @@ from frahm.attractors.finding import find_attractors
 from frahm.attractors.modulated import modulated_response
 from frahm.attractors.modulated_branches import modulated_branches
 from frahm.attractors.modulated_curve import ModulatedCurve
-from frahm.attractors.worst import WorstCase, driven_at, worst_case
-from frahm.attractors.worst_motion import WorstMotion
+from frahm.attractors.worst import WorstCase, driven_at, worst_case, worst_of, worst_over
+from frahm.attractors.worst_motion import WorstMotion, joined
 
 __all__ = [
     "Attractor",
@@ -18,7 +18,10 @@ __all__ = [
     "basin_map",
     "driven_at",
     "find_attractors",
+    "joined",
     "modulated_branches",
     "modulated_response",
     "worst_case",
+    "worst_of",
+    "worst_over",
 ]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,14 +14,14 @@ from frahm.attractors.finding import MOST_SAMPLES, PERIODS, attractors_from
 from frahm.attractors.linear_motion import linear_motions
 from frahm.attractors.regions import Region, checked_region, region_for
 from frahm.attractors.stroboscope import stroboscope
-from frahm.attractors.worst_motion import WorstMotion
+from frahm.attractors.worst_motion import WorstMotion, joined
 from frahm.case import load_case
 from frahm.errors import Outcome, ParameterError, check_count, check_number
 from frahm.harmonic_balance import PeriodicResponse, is_linear, responses_on
-from frahm.loads import OperatingRange, frequency_range, operating_range
+from frahm.loads import OperatingRange, frequency_range, operating_range, other_modes
 from frahm.response import ResponseCurve
 from frahm.response.exact import curve_and_branches
-from frahm.systems import System, as_system, detuning_of, excitation_window, with_parameters
+from frahm.systems import System, as_system, build_system, detuning_of, excitation_window, with_parameters
 
 if TYPE_CHECKING:
     from frahm.case import Case
@@ -55,6 +55,8 @@ class WorstCase:
     surveys : tuple of AttractorSet
         All frequencies looked at, ascending.
     min_basin : float
+    others : tuple of WorstCase
+        Of the other modes that winds of the site excite, each over the winds that do; `motion` is the worst of all.
     """
 
     motion: WorstMotion
@@ -63,6 +65,7 @@ class WorstCase:
     not_excluded: float
     surveys: tuple[AttractorSet, ...]
     min_basin: float
+    others: tuple[WorstCase, ...] = ()
 
     @property
     def pipe_peak(self) -> float:
@@ -149,7 +152,8 @@ def worst_case(
         Window (lo, hi) of sigma or Omega [rad/s].
     wind : tuple of float
         Window (lo, hi) of the wind speed of a case [m/s]: shedding frequency and lift both follow it. Give one of the
-        three; with none a case is asked about its own range of operation, see `frahm.loads.operating_range`.
+        three; with none a case is asked about its own range of operation, see `frahm.loads.operating_range`, and an
+        elastic pipe about every other mode that winds of its site excite, too.
     samples : int
         Initial states at every frequency.
     min_basin : float
@@ -176,16 +180,28 @@ def worst_case(
         For bad input.
     """
     system = as_system(case_or_system)
-    return worst_over(
-        system, _range(case_or_system, system, detuning, frequency, wind),
-        samples=check_count("samples", samples, at_most=MOST_SAMPLES),
-        min_basin=check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
-        seed=check_count("seed", seed, at_least=0),
-        region=None if region is None else checked_region(system, region),
-        periods=check_count("periods", periods, at_most=1_000_000),
-        workers=None if workers is None else check_count("workers", workers, at_most=1024),
-        rms=rms,
-    )  # fmt: skip
+    within = _range(case_or_system, system, detuning, frequency, wind)
+    settings: dict[str, Any] = {
+        "samples": check_count("samples", samples, at_most=MOST_SAMPLES),
+        "min_basin": check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
+        "seed": check_count("seed", seed, at_least=0),
+        "region": None if region is None else checked_region(system, region),
+        "periods": check_count("periods", periods, at_most=1_000_000),
+        "workers": None if workers is None else check_count("workers", workers, at_most=1024),
+        "rms": rms,
+    }
+    first = worst_over(system, within, **settings)
+    if isinstance(case_or_system, System) or not within.moves:
+        return first
+    others = [worst_over(build_system(case), part, **settings) for case, part in other_modes(load_case(case_or_system))]
+    return worst_of((first, *others))
+
+
+def worst_of(parts: Sequence[WorstCase]) -> WorstCase:
+    """The worst of several ranges, such as those of the modes of an elastic pipe; the others stay in `others`."""
+    largest = max(parts, key=lambda part: part.pipe_peak)
+    others = tuple(part for part in parts if part is not largest)
+    return replace(largest, motion=joined([part.motion for part in parts]), others=others)
 
 
 def _range(case_or_system: Any, system: System, detuning: Any, frequency: Any, wind: Any) -> OperatingRange:

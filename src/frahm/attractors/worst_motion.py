@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 from frahm.arrays import Floats
@@ -102,3 +103,28 @@ class WorstMotion:
             "verified": self.verified,
             "unverified": list(self.unverified),
         }
+
+
+def joined(motions: Sequence[WorstMotion]) -> WorstMotion:
+    """The worst of several ranges as one: the largest motion, the largest stroke, rms and stress, and every doubt."""
+    largest = max(motions, key=lambda motion: motion.pipe_peak)
+    if len(motions) == 1:
+        return largest
+    stroke = max(motions, key=lambda motion: motion.relative_peak)
+    loudest = max(motions, key=lambda motion: motion.pipe_rms)
+    known = [motion for motion in motions if not math.isnan(motion.stress_range)]
+    stressed = max(known, key=lambda motion: motion.stress_range, default=largest)
+    return replace(
+        largest,
+        relative_peak=stroke.relative_peak,
+        relative_frequency=stroke.relative_frequency,
+        pipe_rms=loudest.pipe_rms,
+        rms_frequency=loudest.rms_frequency,
+        stress_range=stressed.stress_range,
+        stress_frequency=stressed.stress_frequency,
+        stress_section=stressed.stress_section,
+        range="; ".join(dict.fromkeys(motion.range for motion in motions)),
+        tier=" and ".join(dict.fromkeys(motion.tier for motion in motions)),
+        searched=sum(motion.searched for motion in motions),
+        unverified=tuple(dict.fromkeys(doubt for motion in motions for doubt in motion.unverified)),
+    )

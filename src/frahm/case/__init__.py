@@ -16,6 +16,7 @@ from frahm.case.climate import Climate, ClimateRow, Weibull
 from frahm.case.design import FAMILIES, OBJECTIVES, Design, Scatter
 from frahm.case.fatigue import SN_CURVE_NAMES, Fatigue
 from frahm.case.fields import FieldFacts, FieldValue, field_table, field_values
+from frahm.case.limits import Limits
 from frahm.case.loading import builtin_names, builtin_text, case_from_text, load_case, template_text
 from frahm.case.mode_table import ModeTable
 from frahm.case.pipe import AnyPipe, Pipe
@@ -41,6 +42,7 @@ __all__ = [
     "Fatigue",
     "FieldFacts",
     "FieldValue",
+    "Limits",
     "LinearLaw",
     "ModeTable",
     "Pipe",

@@ -89,6 +89,7 @@ def design(
 
 
 def _conclude(study: DesignStudy, folder: Path) -> None:
+    from frahm import readable
     from frahm.design import parameters_text
 
     best, objective = study.best, study.objective
@@ -100,8 +101,12 @@ def _conclude(study: DesignStudy, folder: Path) -> None:
         )
         typer.echo(
             f"Best {best.name}: {parameters_text(best.design)};{value}"
-            f" worst pipe peak {best.worst_pipe_peak:#.4g} m, {'verified' if best.verified else 'UNVERIFIED'}."
+            f" worst pipe peak {readable.length(best.worst_pipe_peak)} {best.worst.place} over {best.worst.range},"
+            f" {'verified' if best.verified else 'UNVERIFIED'}."
         )
+    typer.echo(study.headline)
+    if study.acceptance.get("rows"):
+        typer.echo(study.acceptance["sentence"])
     typer.echo(study.verdict)
     typer.echo(f"Report: {folder / 'report.html'} (numbers: summary.json, the design as a case: best.yaml)")
     for doubt in study.unverified:
@@ -110,6 +115,8 @@ def _conclude(study: DesignStudy, folder: Path) -> None:
         raise typer.Exit(ExitCode.INTERRUPTED)
     if not study.verified:
         raise typer.Exit(ExitCode.UNVERIFIED)
+    if study.acceptance.get("verdict") == "fail":
+        raise typer.Exit(ExitCode.LIMIT_EXCEEDED)
 
 
 def stored_design_text(folder: Path) -> str | None:

@@ -21,6 +21,7 @@ class ExitCode(enum.IntEnum):
     DONE = 0
     BAD_INPUT = 2
     UNVERIFIED = 3
+    LIMIT_EXCEEDED = 4
     INTERRUPTED = 130
 
 

@@ -107,3 +107,5 @@ def _conclude(analysis: Analysis, folder: Path) -> None:
         typer.echo(f"frahm: {doubt}", err=True)
     if not analysis.verified:
         raise typer.Exit(ExitCode.UNVERIFIED)
+    if not analysis.accepted:
+        raise typer.Exit(ExitCode.LIMIT_EXCEEDED)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm import __version__
+from frahm.assessment import accepted, fatigue_damage, utilisations, with_stress
+from frahm.attractors import WorstCase, WorstMotion, joined, worst_over
 from frahm.case import FAMILIES, Case, Design, load_case
 from frahm.design.absorber import DesignedAbsorber, absorber_of, parameters_text, with_design, without_first
 from frahm.design.disturbance import Disturbance
@@ -23,10 +25,11 @@ from frahm.design.problem import Problem
 from frahm.design.robustness import Sensitivity, ToleranceBand, sensitivities, tolerance_band
 from frahm.design.search import Limits, TierOne
 from frahm.design.settings import DesignSettings, settings_for
-from frahm.design.study import DesignStudy, MarginPoint, Rival
+from frahm.design.study import DesignStudy, MarginPoint, Rival, headline
 from frahm.design.verdict import verdict
 from frahm.design.verification import Verification, climate_verification, glimpse, verification
 from frahm.errors import ParameterError
+from frahm.loads import other_modes
 from frahm.systems import System, build_system
 
 if TYPE_CHECKING:
@@ -154,6 +157,7 @@ class _Designing:
         self.objective = self.problem.objective
         self.limits = self.problem.limits
         self.done, self.total = 0, 0
+        self.nominal: dict[DesignedAbsorber | str | None, WorstCase | None] = {}
 
     def system_of(self, design: DesignedAbsorber) -> System:
         return build_system(with_design(self.case, design))
@@ -163,7 +167,7 @@ class _Designing:
         families = ["sink", "tuned", "mixed"]
         if self.settings.family == "tuned":
             families = ["tuned", "sink", "mixed"]
-        self.total = len(families) + 4 + 5
+        self.total = len(families) + 5 + 5
         for family in families:
             rival = self.designed(family)
             if family == self.settings.family:
@@ -175,6 +179,7 @@ class _Designing:
             if rival is not None:
                 self.found.rivals[rival.name] = rival
         self._others()
+        self._whole()
         self._made()
         self._error_table()
         self._trade_off()
@@ -233,6 +238,7 @@ class _Designing:
                 continue
             checked = self._verify(with_design(self.case, finalist.design))
             rival = _rival(_DEVICES[family], finalist.design, checked, finalist.force_margin)
+            self.nominal[finalist.design] = checked.nominal
             more = self._with_margin(rival)
             reason = self._beyond(rival.design, max(checked.relative_peak, more.relative_peak if more else 0.0))
             if reason:
@@ -322,13 +328,56 @@ class _Designing:
     def _others(self) -> None:
         """The pipe without absorber, and the case's own."""
         self._step("no absorber")
-        self.found.rivals["none"] = _rival("none", None, self._verify(without_first(self.case)), math.inf)
+        checked = self._verify(without_first(self.case))
+        self.nominal["none"] = checked.nominal
+        self.found.rivals["none"] = _rival("none", None, checked, math.inf)
         if self.case.absorbers:
             self._step("the case's own absorber")
             problem, most = self.problem, 1.1 * self.settings.force_margin
             checked = self._verify(self.case)
+            self.nominal["case"] = checked.nominal
             free, _ = exact_birth(build_system(self.case), problem.windows, problem.disturbances, 1.0, most)
             self.found.rivals["case"] = _rival("case", absorber_of(self.case), checked, free)
+
+    def _whole(self) -> None:
+        """Every device with its worst motion as `frahm run` finds it, with every mode, the stress and the fatigue."""
+        self._step("other modes, stress and fatigue")
+        for name, rival in list(self.found.rivals.items()):
+            case = self._rival_case(rival)
+            worst = self._worst_motion(case, self.nominal.get(name if name in ("none", "case") else rival.design))
+            bounded = self.objective.name == "peak" and self.settings.quantile is None
+            value = max(rival.value, worst.pipe_peak) if bounded else rival.value
+            whole = replace(rival, worst=worst, value=value, fatigue=self._fatigue(case))
+            self.found.rivals[name] = whole
+            if self.found.best is not None and name == self.found.best.name:
+                self.found.best = whole
+
+    def _worst_motion(self, case: Case, nominal: WorstCase | None) -> WorstMotion:
+        """The worst motion of the pipe as given with a device, by the very search of `frahm run`."""
+        within = self.problem.within
+        asked: dict[str, Any] = {"samples": self.settings.samples, "seed": self.settings.seed, "min_basin": 0.0}
+        first = nominal if nominal is not None else worst_over(build_system(case), within, **asked)
+        motions = [with_stress(case, first)]
+        for other, part in other_modes(case, self.problem.most_mass_ratio) if within.moves else ():
+            motions.append(with_stress(other, worst_over(build_system(other), part, **asked)))
+        return joined(motions)
+
+    def _fatigue(self, case: Case) -> dict[str, Any] | None:
+        """Fatigue over the climate with a device, of a case that asks for it."""
+        if case.fatigue is None or case.climate is None:
+            return None
+        found = fatigue_damage(case)
+        factor = found.design_fatigue_factor
+        return {
+            "damage": found.damage_with, "utilisation_with": factor * found.damage_with,
+            "life_years": found.life_years, "stress_range": float(np.max(found.range_with, initial=0.0)),
+            "design_fatigue_factor": factor, "duration_years": found.duration_years,
+            "unverified": list(found.unverified),
+        }  # fmt: skip
+
+    def _acceptance(self, best: Rival) -> dict[str, Any]:
+        rows = utilisations(self.case, {**best.worst.row(), "relative_peak": best.relative_peak}, best.fatigue)
+        return accepted(rows, best.verified)
 
     def _made(self) -> None:
         """The chosen design as hardware, with its tolerances and slopes, and with the force the springs really have."""
@@ -354,30 +403,36 @@ class _Designing:
 
     def _error_table(self) -> None:
         """Every device at every frequency error, not retuned."""
-        wide = self.problem.wide
-        windows, objective = Windows(wide, wide, True), Objective()
+        wide, objective, within = self.problem.wide, Objective(), self.problem.within
+        windows = self.problem.windows if within.over_wind else Windows(wide, wide, True)
+        lock_in = not within.over_wind
         if not self.settings.errors:
             return
         for name, rival in sorted(self.found.rivals.items()):
             self._step(f"frequency errors: {name}")
             system = self._rival_system(rival)
 
-            def row(error: float, system: System = system) -> Verification:
+            def row(error: float, system: System = system, rival: Rival = rival) -> WorstMotion:
+                if error == 1:  # known already, and better
+                    return rival.worst
                 return glimpse(
-                    system, windows, Disturbance(pipe_frequency=error), objective, samples=_TABLE_SAMPLES,
-                    seed=self.settings.seed, periods=_TABLE_PERIODS,
-                )  # fmt: skip
+                    system, windows, Disturbance(pipe_frequency=error, lock_in=lock_in), objective,
+                    samples=_TABLE_SAMPLES, seed=self.settings.seed, periods=_TABLE_PERIODS,
+                ).motion  # fmt: skip
 
             rows = in_threads(row, self.settings.errors)
             self.found.table[name] = tuple(row.pipe_peak for row in rows)
             self.found.sure[name] = tuple(row.verified for row in rows)
 
-    def _rival_system(self, rival: Rival) -> System:
+    def _rival_case(self, rival: Rival) -> Case:
         if rival.name == "none":
-            return build_system(without_first(self.case))
+            return without_first(self.case)
         if rival.name == "case" or rival.design is None:
-            return build_system(self.case)
-        return self.system_of(rival.design)
+            return self.case
+        return with_design(self.case, rival.design)
+
+    def _rival_system(self, rival: Rival) -> System:
+        return build_system(self._rival_case(rival))
 
     def _trade_off(self) -> None:
         """The best design under other force margins."""
@@ -400,13 +455,22 @@ class _Designing:
             if reason:
                 return None, [*discarded, f"With a force margin of {margin:g}: {reason}."]
             return MarginPoint(
-                margin, design, checked.value, checked.pipe_peak, checked.verified, checked.tier
+                margin, design, checked.value, checked.pipe_peak, checked.verified, checked.motion.tier
             ), discarded
 
         for found, discarded in in_threads(point, self.settings.margins):
             self.found.discarded += discarded
             if found is not None:
                 self.found.trade_off.append(found)
+
+    def _best_case(self, design: DesignedAbsorber) -> Case:
+        """The case with a design, asked about the same range with the same states, so that a run of it agrees."""
+        asked: dict[str, Any] = {"samples": self.settings.samples, "seed": self.settings.seed}
+        if self.settings.wind is not None:
+            asked |= {"wind": self.settings.wind, "detuning": None}
+        case = with_design(self.case, design)
+        same = all(getattr(case.analysis, key) == value for key, value in asked.items())
+        return case if same else case.with_analysis(**asked)
 
     def study(self, interrupted: bool) -> DesignStudy:
         found, best = self.found, self.found.best
@@ -428,11 +492,14 @@ class _Designing:
         if interrupted:
             doubts.append("Interrupted: the comparison is not complete.")
         name = f"{self.case.name}-{best.name.replace(' ', '-')}"[:60]
+        first = min(rivals, key=lambda rival: (not rival.verified, rival.value))
+        title = f"Designed for {self.case.name}. {headline(best, first, self.objective)}"[:200]
         return DesignStudy(
             case=self.case,
             settings=self.settings,
             best=best,
-            best_case=with_design(self.case, best.design).with_name(name, f"Designed for {self.case.name}"[:200]),
+            best_case=self._best_case(best.design).with_name(name, title),
+            acceptance=self._acceptance(best),
             comparison=rivals,
             errors=self.settings.errors,
             error_table=found.table,
@@ -479,19 +546,6 @@ def in_threads(function: Callable[[Any], Any], items: Sequence[Any]) -> list[Any
 
 
 def _rival(name: str, design: DesignedAbsorber | None, checked: Verification, force_margin: float) -> Rival:
-    return Rival(
-        name=name,
-        design=design,
-        value=checked.value,
-        worst_pipe_peak=checked.pipe_peak,
-        relative_peak=checked.relative_peak,
-        pipe_rms=checked.pipe_rms,
-        error=checked.disturbance.pipe_frequency,
-        frequency=checked.frequency,
-        kind=checked.kind,
-        force_margin=float(force_margin),
-        verified=checked.verified,
-        tier=checked.tier,
-        samples=checked.samples,
-        unverified=checked.unverified,
-    )
+    """A device as far as the search has come; `_Designing.whole` adds what the comparison needs."""
+    nominal = checked.motion if checked.nominal is None else checked.nominal.motion
+    return Rival(name, design, checked.value, nominal, checked.motion, checked.disturbance, float(force_margin))

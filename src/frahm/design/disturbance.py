@@ -91,7 +91,9 @@ def disturbances(
     if names == ("pipe_frequency",) and quantile is None:
         s = scatter.pipe_frequency
         count = 1 + 2 * math.ceil(s / _STEP - 1e-9)
-        return [replace(nominal, pipe_frequency=float(r)) for r in np.linspace(1 - s, 1 + s, count)]
+        ratios = np.linspace(1 - s, 1 + s, count)
+        ratios[count // 2] = _NOMINAL  # rounding may miss it, and the pipe as given is one of them
+        return [replace(nominal, pipe_frequency=float(r)) for r in ratios]
     from scipy.stats import qmc
 
     widths = np.array([getattr(scatter, name) for name in names])

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frahm.design.disturbance import Disturbance
-from frahm.response import ResponseCurve, frequency_response
+from frahm.loads import OperatingRange, frequency_range
+from frahm.response import ResponseCurve
 from frahm.response.exact import exact_curve
-from frahm.response.wind import WindAxis
 from frahm.systems import System
 
 _STEPS = 9
@@ -25,32 +25,45 @@ class Windows:
     Attributes
     ----------
     window, wide : tuple of float
-        Both move with the frequency of the pipe if `moving`, the wide one always does.
-    axis : WindAxis, optional
-        Winds instead: both windows are its shedding frequencies, and the force follows the wind.
+        Both move with the frequency of the pipe if `moving`; at a fixed lift the wide one always does.
+    axis : OperatingRange, optional
+        Winds instead: both windows are shedding frequencies, and the force follows the wind. It holds the window of
+        every pipe, as far as the site has such winds.
+    nominal : OperatingRange, optional
+        The range of operation of the undisturbed pipe.
     """
 
     window: tuple[float, float]
     wide: tuple[float, float]
     moving: bool
-    axis: WindAxis | None = None
+    axis: OperatingRange | None = None
+    nominal: OperatingRange | None = None
 
     def at(self, disturbance: Disturbance) -> tuple[tuple[float, float], tuple[float, float]]:
         """Window of the response, and the one in which the complete curve is followed."""
-        if self.axis is not None:
-            return self.window, self.window
         r = disturbance.pipe_frequency
         scale = r if self.moving else 1.0
         lo, hi = self.window[0] * scale, self.window[1] * scale
+        if self.axis is not None:
+            first, last = self.axis.frequency
+            inside = max(lo, first), min(hi, last)
+            return inside, inside
         return (lo, hi), (min(lo, self.wide[0] * r), max(hi, self.wide[1] * r))
+
+    def range(self, disturbance: Disturbance, reference: float) -> OperatingRange:
+        """Range of operation of a pipe under a disturbance, whose detuning counts from `reference` [rad/s]."""
+        if self.nominal is not None and disturbance.pipe_frequency == 1:
+            return self.nominal
+        window, _ = self.at(disturbance)
+        if self.axis is None:
+            return frequency_range(*window, reference)
+        return replace(self.axis.part(*window), reference=reference)
 
     def curve(self, system: System, disturbance: Disturbance) -> ResponseCurve:
         """The complete response under a disturbance."""
         _, wide = self.at(disturbance)
         changed = disturbance.of(system)
-        if self.axis is None:
-            return frequency_response(changed, frequency=wide)
-        return exact_curve(changed, *wide, None, self.axis.factor)
+        return exact_curve(changed, *wide, None, None if self.axis is None else self.axis.factor)
 
 
 @dataclass(frozen=True)

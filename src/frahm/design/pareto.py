@@ -17,6 +17,7 @@ from frahm.design.screening import Screening
 from frahm.design.settings import DesignSettings
 from frahm.design.space import design_space
 from frahm.errors import ParameterError, check_count, check_number
+from frahm.loads import operating_range
 from frahm.systems import build_system
 
 if TYPE_CHECKING:
@@ -83,11 +84,13 @@ def _searched(
         raise ParameterError("pareto_front", "pymoo is missing", "the package pymoo", hint=hint) from None
     host = host_of(build_system(with_design(case, DesignedAbsorber(masses[0], 0.0, 1.0, 0.0))))
     omega, nominal = host.frequency, [Disturbance()]
-    window = (omega + case.analysis.detuning[0], omega + case.analysis.detuning[1])
+    within = operating_range(case, most_mass_ratio=masses[1])
+    lift = np.vectorize(within.lift_factor, otypes=[float]) if within.over_wind else None
+    wide = within.frequency if within.over_wind else (WIDE[0] * omega, WIDE[1] * omega)
     screening = Screening(
         host,
-        host.conditions(nominal, window, _POINTS, moving=False),
-        host.conditions(nominal, (WIDE[0] * omega, WIDE[1] * omega), _WIDE_POINTS),
+        host.conditions(nominal, within.frequency, _POINTS, moving=False, lift=lift),
+        host.conditions(nominal, wide, _WIDE_POINTS, lift=lift),
     )
     space = design_space(host, case.pipe.mass, settings.family, settings.changed(mass_ratio=masses))
 

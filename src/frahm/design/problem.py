@@ -22,8 +22,7 @@ from frahm.design.search import Corrections, Limits, TierOne
 from frahm.design.settings import DesignSettings
 from frahm.design.space import design_space
 from frahm.errors import ParameterError
-from frahm.loads import vortex_shedding, wind_climate
-from frahm.response.wind import WindAxis, wind_axis
+from frahm.loads import OperatingRange, operating_range, vortex_shedding, wind_climate
 from frahm.systems import build_system
 
 WIDE = (0.7, 1.3)  # of the pipe's frequency: where the lift may lock in
@@ -41,6 +40,8 @@ class Problem:
     settings : DesignSettings
     objective : Objective
     windows : Windows
+    within : OperatingRange
+        What the worst motion of every device is asked about.
     wide : tuple of float
         Where the lift may lock in [rad/s].
     disturbances : list of Disturbance
@@ -53,6 +54,7 @@ class Problem:
     settings: DesignSettings
     objective: Objective
     windows: Windows
+    within: OperatingRange
     wide: tuple[float, float]
     disturbances: list[Disturbance]
     limits: Limits
@@ -74,19 +76,21 @@ class Problem:
         omega = case.pipe.frequency
         wide = (WIDE[0] * omega, WIDE[1] * omega)
         moving = settings.scatter.pipe_frequency > 0
-        axis = _axis(case, settings, objective)
-        if axis is not None:
-            windows = Windows(axis.frequency, axis.frequency, False, axis)
+        within = _range(case, settings, objective)
+        if within.over_wind:
+            axis = within.stretched(*_frequencies(settings)) if within.moves else within
+            windows = Windows(within.frequency, within.frequency, within.moves, axis, within)
         else:
-            lo, hi = case.analysis.detuning
-            windows = Windows(wide if moving else (omega + lo, omega + hi), wide, moving)
+            windows = Windows(wide if moving else within.frequency, wide, moving, nominal=within)
         conditions = disturbances(
-            settings.scatter, settings.quantile, settings.scatter_samples, settings.seed, lock_in=axis is None
-        )
+            settings.scatter, settings.quantile, settings.scatter_samples, settings.seed,
+            lock_in=not within.over_wind,
+        )  # fmt: skip
         stops = case.absorbers[0].stops if case.absorbers else None
         stroke = min(settings.most_stroke, math.inf if stops is None else stops.gap)
         limits = Limits(settings.force_margin, stroke, False, settings.spring_length, settings.spring_stress)
-        return cls(case, settings, objective, windows, wide, conditions, limits)
+        asked = within if not objective.over_climate else _range(case, settings, Objective())
+        return cls(case, settings, objective, windows, asked, wide, conditions, limits)
 
     def check_host(self) -> None:
         """Refuse a case whose other absorbers are nonlinear, or whose absorber sits where nothing moves."""
@@ -96,6 +100,11 @@ class Problem:
     def screened(self) -> int:
         """Designs judged by the closed form so far."""
         return self._tried + sum(tier.count for tier in self.tiers.values())
+
+    @property
+    def most_mass_ratio(self) -> float:
+        """Largest mass ratio a design may have [-]."""
+        return _most_mass_ratio(self.settings)
 
     def tier(self, family: str, margin: float | None = None) -> TierOne:
         """Closed form for a family, with the force given and with its margin, at its best place."""
@@ -166,7 +175,7 @@ class Problem:
             host.conditions(
                 self.disturbances, windows.window, _RESPONSE_POINTS, moving=windows.moving, forces=forces, lift=lift
             ),
-            host.conditions(self.disturbances, wide, _BIRTH_POINTS, moving=lift is None, lift=lift),
+            host.conditions(self.disturbances, wide, _BIRTH_POINTS, moving=lift is None or windows.moving, lift=lift),
             self._climate(host, place) if self.objective.over_climate else None,
         )
         settings = self.settings if family == self.settings.family else self.settings.for_rival()
@@ -221,11 +230,22 @@ def _check(case: Case, settings: DesignSettings, objective: Objective) -> None:
         raise ParameterError("design.quantile", settings.quantile, "nothing where nothing scatters", hint=hint)
 
 
-def _axis(case: Case, settings: DesignSettings, objective: Objective) -> WindAxis | None:
+def _range(case: Case, settings: DesignSettings, objective: Objective) -> OperatingRange:
     if objective.over_climate:
-        return wind_axis(case, counted_band(case))
-    return None if settings.wind is None else wind_axis(case, settings.wind)
+        return operating_range(case, wind=counted_band(case))
+    return operating_range(case, wind=settings.wind, most_mass_ratio=_most_mass_ratio(settings))
 
 
-def _lift(axis: WindAxis) -> Lift:
+def _most_mass_ratio(settings: DesignSettings) -> float:
+    ratio = settings.mass_ratio
+    return (max(ratio) if isinstance(ratio, tuple) else ratio) or 0.0
+
+
+def _frequencies(settings: DesignSettings) -> tuple[float, float]:
+    """Least and largest frequency of the pipe over the nominal one that anything is asked about [-]."""
+    spread = settings.scatter.pipe_frequency
+    return min(1 - spread, *settings.errors, 1.0), max(1 + spread, *settings.errors, 1.0)
+
+
+def _lift(axis: OperatingRange) -> Lift:
     return np.vectorize(axis.lift_factor, otypes=[float])

@@ -37,7 +37,7 @@ def design_summary(study: DesignStudy) -> dict[str, Any]:
         "schema": SCHEMA,
         "frahm": study.version,
         "case": study.case.to_dict(),
-        "results": {"design": _plain(study.results())},
+        "results": {"design": _plain(study.results()), "acceptance": _plain(study.acceptance)},
         "checks": [
             {
                 "name": f"Worst case of {rival.name} over all attractors",

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.arrays import labelled
+from frahm.attractors import WorstMotion
 from frahm.design.absorber import UNITS, DesignedAbsorber
+from frahm.design.disturbance import Disturbance
 from frahm.design.hardware import Hardware
 from frahm.design.objective import Objective
 from frahm.design.robustness import Sensitivity, ToleranceBand
@@ -20,10 +23,11 @@ if TYPE_CHECKING:
 
     from frahm.case import Case
 
+_ALIKE = 0.995  # values that differ by less are one
 NAMES = ("none", "case", "sink", "tuned mass damper", "mixed")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Rival:
     """One device of the comparison.
 
@@ -34,39 +38,75 @@ class Rival:
     design : DesignedAbsorber or None
         Its parameters; None for no absorber, or for one of the case that is not of the family.
     value : float
-        Of the objective: the worst pipe peak, or whatever was asked for.
-    worst_pipe_peak, relative_peak, pipe_rms : float
-        Largest over all attractors, frequencies and disturbances [m].
-    error, frequency : float
-        Frequency of the pipe over its nominal one [-], and Omega [rad/s], where the pipe peak occurs.
-    kind : str
-        Of the motion that causes it.
+        Of the objective: the worst pipe peak, or whatever was asked for, over the scatter.
+    worst : WorstMotion
+        The worst motion of the pipe as given, over the range of operation and every mode that it includes: what
+        `frahm run` finds for the same case.
+    scattered : WorstMotion
+        The worst over everything that scatters.
+    disturbance : Disturbance
+        Under which that occurs.
     force_margin : float
         Largest factor on the force up to which no detached curve was met [-]; infinite where none can be, NaN if
         not searched.
-    verified : bool
-        Whether nothing speaks against the worst pipe peak.
-    tier : str
-        What the worst pipe peak rests on.
-    samples : int
-        Initial states per frequency behind it.
-    unverified : tuple of str
+    fatigue : dict or None
+        Damage, life and utilisation over the climate of a case that asks for them.
     """
 
     name: str
     design: DesignedAbsorber | None
     value: float
-    worst_pipe_peak: float
-    relative_peak: float
-    pipe_rms: float
-    error: float
-    frequency: float
-    kind: str
+    worst: WorstMotion
+    scattered: WorstMotion
+    disturbance: Disturbance
     force_margin: float
-    verified: bool
-    tier: str
-    samples: int
-    unverified: tuple[str, ...]
+    fatigue: dict[str, Any] | None = None
+
+    @property
+    def worst_pipe_peak(self) -> float:
+        """Largest pipe peak of the pipe as given [m]."""
+        return self.worst.pipe_peak
+
+    @property
+    def relative_peak(self) -> float:
+        """Largest stroke over the scatter [m]."""
+        return max(self.worst.relative_peak, self.scattered.relative_peak)
+
+    @property
+    def pipe_rms(self) -> float:
+        """Largest pipe rms over the scatter [m]."""
+        return max(self.worst.pipe_rms, self.scattered.pipe_rms)
+
+    @property
+    def frequency(self) -> float:
+        """Where the worst pipe peak occurs [rad/s]."""
+        return self.worst.frequency
+
+    @property
+    def kind(self) -> str:
+        """Of the motion that causes the worst pipe peak."""
+        return self.worst.kind
+
+    @property
+    def tier(self) -> str:
+        """What the worst pipe peak rests on."""
+        return self.worst.tier
+
+    @property
+    def samples(self) -> int:
+        """Initial states per frequency behind it."""
+        return self.worst.samples
+
+    @property
+    def unverified(self) -> tuple[str, ...]:
+        """What speaks against any of it."""
+        doubts = () if self.fatigue is None else tuple(self.fatigue["unverified"])
+        return tuple(dict.fromkeys((*self.worst.unverified, *self.scattered.unverified, *doubts)))
+
+    @property
+    def verified(self) -> bool:
+        """Whether nothing speaks against it."""
+        return self.worst.verified and self.scattered.verified and not self.unverified
 
 
 @dataclass(frozen=True)
@@ -121,6 +161,8 @@ class DesignStudy:
     unverified : tuple of str
     interrupted : bool
     version : str
+    acceptance : dict
+        The best design against the limits of the case: verdict and utilisations.
     """
 
     case: Case
@@ -144,6 +186,7 @@ class DesignStudy:
     unverified: tuple[str, ...]
     interrupted: bool
     version: str
+    acceptance: dict[str, Any] = field(default_factory=dict)
 
     @property
     def objective(self) -> Objective:
@@ -155,6 +198,21 @@ class DesignStudy:
         """Whether nothing in the study is in doubt."""
         return not self.unverified and not self.interrupted
 
+    @property
+    def best_of_all(self) -> Rival:
+        """The device with the least value of the objective, verified ones first, whatever family was asked for."""
+        return min(self.comparison, key=lambda rival: (not rival.verified, rival.value))
+
+    @property
+    def headline(self) -> str:
+        """What was chosen, and whether another device does better."""
+        return headline(self.best, self.best_of_all, self.objective)
+
+    def ranking(self, error: float) -> list[str]:
+        """Devices by the worst pipe peak where the pipe's frequency is this much of the nominal one, best first."""
+        at = self.errors.index(error)
+        return sorted(self.error_table, key=lambda name: self.error_table[name][at])
+
     def results(self) -> dict[str, Any]:
         """Plain data for the summary, in SI units."""
         return {
@@ -164,6 +222,9 @@ class DesignStudy:
             "best": rival_row(self.best),
             "with_margin": {"force": self.settings.force_margin, "pipe_peak": self.with_margin},
             "comparison": [rival_row(rival) for rival in self.comparison],
+            "headline": self.headline,
+            "acceptance": self.acceptance,
+            "ranking": {f"{100 * (error - 1):+.3g} %": self.ranking(error) for error in self.errors},
             "frequency_errors": {
                 "error": [error - 1.0 for error in self.errors],
                 "pipe_peak": {name: list(values) for name, values in self.error_table.items()},
@@ -218,6 +279,15 @@ class DesignStudy:
         return xr.Dataset(variables, attrs={"frahm": self.version, "case": self.case.name, "verdict": self.verdict})
 
 
+def headline(best: Rival, first: Rival, objective: Objective) -> str:
+    """What was chosen, and whether another device does better."""
+    show = (lambda value: f"{value:.3g}") if objective.name == "damage" else readable.length
+    text = f"Best {best.name}: {objective.title} {show(best.value)}"
+    if first.name in (best.name, "none") or not first.value < _ALIKE * best.value:
+        return f"{text}; no device compared does better."
+    return f"{text}; the {first.name} does better, {show(first.value)}, and is not what was asked for."
+
+
 def hardware_rows(sheet: Hardware | None) -> list[dict[str, Any]]:
     """The hardware sheet as plain data."""
     return [] if sheet is None else [vars(item) for item in sheet.items]
@@ -232,20 +302,20 @@ def tolerance_row(band: ToleranceBand | None) -> dict[str, Any] | None:
 
 
 def rival_row(rival: Rival) -> dict[str, Any]:
-    """One device as plain data."""
+    """One device as plain data: its worst motion whole, and what else was asked of it."""
     return {
         "name": rival.name,
+        **rival.worst.row(),
         **(rival.design.parameters if rival.design else {}),
+        "count": 0 if rival.name == "none" else 1,
         "value": rival.value,
         "worst_pipe_peak": rival.worst_pipe_peak,
+        "worst_over_scatter": rival.scattered.pipe_peak,
+        "frequency_error": rival.disturbance.pipe_frequency - 1.0,
         "relative_peak": rival.relative_peak,
         "pipe_rms": rival.pipe_rms,
-        "frequency_error": rival.error - 1.0,
-        "frequency": rival.frequency,
-        "kind": rival.kind,
         "force_margin": rival.force_margin,
+        "fatigue": rival.fatigue,
         "verified": rival.verified,
-        "tier": rival.tier,
-        "samples": rival.samples,
         "unverified": list(rival.unverified),
     }

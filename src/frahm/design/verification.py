@@ -9,14 +9,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frahm.assessment.climate_mean import climate_mean
-from frahm.attractors import WorstCase, find_attractors
-from frahm.attractors.worst import worst_over
+from frahm.assessment.fatigue import counted_band
+from frahm.attractors import WorstCase, WorstMotion, find_attractors, joined, worst_over
 from frahm.case import Case
 from frahm.design.disturbance import Disturbance
-from frahm.design.exact import Windows, exact_judgement
+from frahm.design.exact import Windows
 from frahm.design.objective import Objective
 from frahm.errors import Outcome
 from frahm.harmonic_balance import is_linear
+from frahm.loads import operating_range
 from frahm.response import ResponseCurve
 from frahm.systems import System, build_system, with_parameters
 
@@ -26,7 +27,7 @@ _BESIDE = 3e-3
 _CLOSE = 0.006  # frequency errors nearer than this are one
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Verification:
     """The worst of all attractors of one design.
 
@@ -34,36 +35,38 @@ class Verification:
     ----------
     value : float
         Of the objective, see `Objective`.
-    pipe_peak, relative_peak, pipe_rms : float
-        Largest over all attractors, frequencies and disturbances [m].
+    motion : WorstMotion
+        Largest over all attractors, frequencies and disturbances, every doubt included.
     disturbance : Disturbance
-    frequency : float
-        Where the pipe peak occurs.
-    kind : str
-        Of the attractor that causes it.
-    verified : bool
-    unverified : tuple of str
-        What speaks against it.
-    samples : int
-        Initial states per frequency; 0 where the equations are linear and the response is unique.
-    searched : int
-        Frequencies searched, all disturbances together.
-    tier : str
-        What the numbers rest on.
+        Under which it occurs.
+    nominal : WorstCase or None
+        The worst of the pipe as given, if that was looked at.
     """
 
     value: float
-    pipe_peak: float
-    relative_peak: float
-    pipe_rms: float
+    motion: WorstMotion
     disturbance: Disturbance
-    frequency: float
-    kind: str
-    verified: bool
-    unverified: tuple[str, ...]
-    samples: int
-    searched: int
-    tier: str
+    nominal: WorstCase | None = None
+
+    @property
+    def pipe_peak(self) -> float:
+        """Largest pipe peak [m]."""
+        return self.motion.pipe_peak
+
+    @property
+    def relative_peak(self) -> float:
+        """Largest stroke [m]."""
+        return self.motion.relative_peak
+
+    @property
+    def verified(self) -> bool:
+        """Whether nothing speaks against it."""
+        return self.motion.verified
+
+    @property
+    def unverified(self) -> tuple[str, ...]:
+        """What speaks against it."""
+        return self.motion.unverified
 
 
 def verification(
@@ -75,7 +78,7 @@ def verification(
     samples: int,
     seed: int,
     force: float = 1.0,
-    min_basin: float = 0.01,
+    min_basin: float = 0.0,
     periods: int = 3000,
     refine: bool = True,
 ) -> Verification:
@@ -86,15 +89,13 @@ def verification(
     KeyboardInterrupt
         If the search was interrupted.
     """
-    if is_linear(system):
-        return _linear(system, windows, disturbances, objective, force)
     found: dict[Disturbance, WorstCase] = {}
 
     def look(one: Disturbance) -> None:
-        window, _ = windows.at(one)
+        changed = one.at_force(force).of(system)
         worst = worst_over(
-            one.at_force(force).of(system), *window, windows.axis, samples=samples, seed=seed, min_basin=min_basin,
-            periods=periods, rms=objective.name == "rms",
+            changed, windows.range(one, changed.reference_frequency), samples=samples, seed=seed,
+            min_basin=min_basin, periods=periods, rms=objective.name == "rms",
         )  # fmt: skip
         if Outcome.INTERRUPTED.value in worst.unverified:
             raise KeyboardInterrupt
@@ -108,7 +109,7 @@ def verification(
             break
         for one in middles:
             look(one)
-    return _joined(found, objective, samples)
+    return _joined(found, objective)
 
 
 def is_grid(disturbances: Sequence[Disturbance]) -> bool:
@@ -134,9 +135,10 @@ def glimpse(
         If the search was interrupted.
     """
     if is_linear(system):
-        return _linear(system, windows, [disturbance], objective, 1.0)
+        return verification(system, windows, [disturbance], objective, samples=samples, seed=seed)
     window, _ = windows.at(disturbance)
     changed = disturbance.of(system)
+    within = windows.range(disturbance, changed.reference_frequency)
     curve = windows.curve(system, disturbance)
     inside = (curve.frequency >= window[0]) & (curve.frequency <= window[1])
     best, doubts = None, list(curve.unverified)
@@ -158,17 +160,22 @@ def glimpse(
     stable = inside & curve.stable
     periodic = float(np.max(curve.pipe_peak[stable], initial=0.0))
     stroke = float(np.max(curve.relative_peak[stable], initial=0.0))
-    if best is None or best.pipe_peak < periodic:
-        at = int(np.argmax(np.where(stable, curve.pipe_peak, -1.0)))
-        peak, kind, frequency = periodic, "periodic", float(curve.frequency[at])
-    else:
-        peak, kind, frequency = best.pipe_peak, best.kind, best.frequency
-        stroke = max(stroke, best.relative_peak)
+    peak, kind, frequency, state = periodic, "periodic", math.nan, np.empty(0)
+    if stable.any():
+        frequency = float(curve.frequency[int(np.argmax(np.where(stable, curve.pipe_peak, -1.0)))])
+    chance, interval = 0.0, (0.0, 1.0)
+    if best is not None and not best.pipe_peak < periodic:
+        peak, kind, frequency, state = best.pipe_peak, best.kind, best.frequency, best.representative_state
+        chance, interval, stroke = best.basin_fraction, best.basin_interval, max(stroke, best.relative_peak)
     rms = max(rms, periodic / math.sqrt(2))
-    return Verification(
-        rms if objective.name == "rms" else peak, peak, stroke, rms, disturbance, frequency, kind, not doubts,
-        tuple(dict.fromkeys(doubts)), samples, len(places), "attractors at few frequencies",
+    motion = WorstMotion(
+        pipe_peak=peak, frequency=frequency, detuning=frequency - changed.reference_frequency,
+        wind_speed=float(within.speed(frequency)) if math.isfinite(frequency) else math.nan, kind=kind,
+        basin_fraction=chance, basin_interval=interval, relative_peak=stroke, relative_frequency=frequency,
+        pipe_rms=rms, rms_frequency=frequency, state=state, range=within.text, tier="attractors at few frequencies",
+        samples=samples, searched=len(places), unverified=tuple(dict.fromkeys(doubts)),
     )  # fmt: skip
+    return Verification(rms if objective.name == "rms" else peak, motion, disturbance)
 
 
 def _telling_frequencies(curve: ResponseCurve, inside: np.ndarray) -> list[float]:
@@ -210,53 +217,22 @@ def _value(worst: WorstCase, objective: Objective) -> float:
     return worst.pipe_rms if objective.name == "rms" else worst.pipe_peak
 
 
-def _joined(found: dict[Disturbance, WorstCase], objective: Objective, samples: int) -> Verification:
+def _joined(found: dict[Disturbance, WorstCase], objective: Objective) -> Verification:
     grid = sorted(found)
     at = max(grid, key=lambda one: found[one].pipe_peak)
-    worst = found[at]
-    doubts = tuple(
-        dict.fromkeys(
-            (f"With {one.text} off: " if one.text else "") + sentence
-            for one in grid
-            for sentence in found[one].unverified
-        )
-    )
+    motions = [replace(found[one].motion, unverified=_named(one, found[one].unverified)) for one in grid]
+    nominal = next((found[one] for one in grid if replace(one, lock_in=True) == Disturbance()), None)
     return Verification(
         value=float(objective.over_scatter(np.array([_value(found[one], objective) for one in grid]))),
-        pipe_peak=worst.pipe_peak,
-        relative_peak=max(item.relative_peak for item in found.values()),
-        pipe_rms=max(item.pipe_rms for item in found.values()),
+        motion=joined(motions),
         disturbance=at,
-        frequency=worst.frequency,
-        kind=worst.attractor.kind,
-        verified=not doubts and math.isfinite(worst.pipe_peak),
-        unverified=doubts,
-        samples=samples,
-        searched=sum(len(item.surveys) for item in found.values()),
-        tier="attractor search",
+        nominal=nominal,
     )
 
 
-def _linear(
-    system: System, windows: Windows, disturbances: Sequence[Disturbance], objective: Objective, force: float
-) -> Verification:
-    """A damped linear system has one response, which attracts every motion: the exact curve is the proof."""
-    conditions = list(disturbances)
-    if is_grid(conditions):
-        ends = conditions[0].pipe_frequency, conditions[-1].pipe_frequency
-        fine = np.linspace(*ends, 4 * len(conditions) - 3)
-        conditions = [replace(conditions[0], pipe_frequency=float(r)) for r in fine]
-    looks = [exact_judgement(system, windows, [one], (force,)) for one in conditions]
-    worst = max(looks, key=lambda look: look.pipe_peak)
-    doubts = tuple(dict.fromkeys(doubt for look in looks for doubt in look.unverified))
-    doubts += () if all(look.growth_rate < 0 for look in looks) else ("The linear response is not stable.",)
-    rms = worst.pipe_peak / math.sqrt(2)
-    scale = 1 / math.sqrt(2) if objective.name == "rms" else 1.0
-    value = scale * float(objective.over_scatter(np.array([look.pipe_peak for look in looks])))
-    return Verification(
-        value, worst.pipe_peak, max(look.relative_peak for look in looks), rms, worst.disturbance, worst.frequency,
-        "periodic", not doubts, doubts, 0, len(conditions), "exact linear response",
-    )  # fmt: skip
+def _named(one: Disturbance, doubts: Sequence[str]) -> tuple[str, ...]:
+    """Doubts with what is off in front."""
+    return tuple((f"With {one.text} off: " if one.text else "") + sentence for sentence in doubts)
 
 
 def climate_verification(
@@ -265,25 +241,18 @@ def climate_verification(
     """Mean over the wind climate of a case under every disturbance, over all attractors at every wind."""
     found = [climate_mean(case, objective.name, samples=samples, seed=seed, changed=one.of) for one in disturbances]
     at = max(range(len(found)), key=lambda i: found[i].pipe_peak)
-    doubts = tuple(
-        dict.fromkeys(
-            (f"With {one.text} off: " if one.text else "") + sentence
-            for one, mean in zip(disturbances, found, strict=True)
-            for sentence in mean.unverified
-        )
-    )
+    doubts = [doubt for one, mean in zip(disturbances, found, strict=True) for doubt in _named(one, mean.unverified)]
     linear = is_linear(build_system(case))
-    return Verification(
-        value=float(objective.over_scatter(np.array([mean.value for mean in found]))),
-        pipe_peak=found[at].pipe_peak,
-        relative_peak=max(mean.relative_peak for mean in found),
-        pipe_rms=max(mean.pipe_rms for mean in found),
-        disturbance=disturbances[at],
-        frequency=found[at].frequency,
-        kind=found[at].kind,
-        verified=not doubts,
-        unverified=doubts,
-        samples=0 if linear else samples,
-        searched=len(found),
+    worst, reference = found[at], disturbances[at].pipe_frequency * case.pipe.frequency
+    within = operating_range(case, wind=counted_band(case))
+    motion = WorstMotion(
+        pipe_peak=worst.pipe_peak, frequency=worst.frequency, detuning=worst.frequency - reference,
+        wind_speed=float(within.speed(worst.frequency)), kind=worst.kind, basin_fraction=math.nan,
+        basin_interval=(math.nan, math.nan), relative_peak=max(mean.relative_peak for mean in found),
+        relative_frequency=math.nan, pipe_rms=max(mean.pipe_rms for mean in found), rms_frequency=math.nan,
+        state=np.empty(0), range=within.text, samples=0 if linear else samples, searched=len(found),
         tier="exact linear response" if linear else "attractor search over the wind climate",
-    )
+        unverified=tuple(dict.fromkeys(doubts)),
+    )  # fmt: skip
+    value = float(objective.over_scatter(np.array([mean.value for mean in found])))
+    return Verification(value, motion, disturbances[at])

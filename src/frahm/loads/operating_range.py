@@ -111,6 +111,18 @@ class OperatingRange:
                      for old, W, edge, U in zip(self.wind, ends, self.frequency, speeds, strict=True))  # fmt: skip
         return replace(self, frequency=ends, wind=wind)  # type: ignore[arg-type]
 
+    def stretched(self, low: float, high: float) -> OperatingRange:
+        """The range that holds this one with its frequencies times every factor between two, `low` <= 1 <= `high`."""
+        ends = self.frequency[0] * low, self.frequency[1] * high
+        if self.wind is None or self.law is None:
+            return replace(self, frequency=ends)
+        least, most = (f(a, b) for f, a, b in zip((max, min), self.site, self.law.speed_range, strict=True))
+        lo = max((float(U) for U in self.law.speeds_of(ends[0]) if self.wind[0] >= U), default=least)
+        hi = min((float(U) for U in self.law.speeds_of(ends[1]) if self.wind[1] <= U), default=most)
+        lo, hi = min(self.wind[0], max(lo, least)), max(self.wind[1], min(hi, most))
+        lo, hi, _ = _ascending(self.law, lo, hi, self.wind[0])
+        return _over(self.law, self.lift, (lo, hi), self.reference, self.site, self.basis, self.moves)
+
     def widened(self, share: float = HALF) -> OperatingRange:
         """The range with its width grown by a share, as far as the site and the tables of the case reach."""
         if self.wind is None or self.law is None:
@@ -299,10 +311,9 @@ def other_modes(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, O
 def excited_bands(case: Case, most_mass_ratio: float = 0.0) -> list[tuple[float, float]]:
     """Shedding frequencies [rad/s] that can excite each mode, the governing one first, however absorbers are tuned."""
     modal = case.pipe.modal
-    ratios = np.zeros(modal.count)
-    for absorber in case.absorbers:
-        ratios += absorber.mass * modal.displacement(absorber.position) ** 2 / modal.masses
-    ratios = np.maximum(ratios, most_mass_ratio * modal.masses[0] / modal.masses)
+    carried = sum(absorber.mass for absorber in case.absorbers)
+    # wherever the absorbers hang: where the mode moves most they split it most
+    ratios = max(carried, most_mass_ratio * modal.masses[0]) / modal.masses
     low, high = LOCK_IN_RATIOS
     bands = []
     for omega, ratio in zip(modal.frequencies, ratios, strict=True):

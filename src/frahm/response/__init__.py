@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from frahm.response.curve import Branch, ResponseCurve, SpecialPoint
-from frahm.response.frequency_response import frequency_response, periodic_responses
+from frahm.response.frequency_response import frequency_response, periodic_responses, with_winds
 from frahm.response.maps import slow_flow_map, slow_flow_values, stability_boundaries
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ __all__ = [
     "slow_flow_map",
     "slow_flow_values",
     "stability_boundaries",
+    "with_winds",
 ]
 
 _LATER = ("DetachedCurveEvent", "bifurcation_curve", "detached_curve_events")  # with all of the harmonic balance
