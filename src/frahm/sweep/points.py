@@ -6,7 +6,7 @@ import functools
 from typing import Any
 
 from frahm.case import Case
-from frahm.loads import vortex_shedding
+from frahm.loads import OperatingRange, frequency_range, operating_range, vortex_shedding
 from frahm.slow_flow import slow_flow_of
 from frahm.sweep.doors import WIND, WINDOW, is_window
 from frahm.sweep.study import Study
@@ -52,6 +52,18 @@ class Point:
         factor = self.values.get("force")
         return system if factor is None else with_parameters(system, force=factor)
 
+    @functools.cached_property
+    def range(self) -> OperatingRange:
+        """Range of operation of the case."""
+        return operating_range(self.case)
+
+    def asked_range(self, asked: Any) -> OperatingRange:
+        """The range a quantity over a window is asked about: that of the case, or the window of detuning asked for."""
+        if asked.detuning == WINDOW and "detuning" not in self.values:
+            return self.range
+        lo, hi = excitation_window(self.system, detuning=self.place(asked))
+        return frequency_range(lo, hi, self.system.reference_frequency)
+
     @property
     def seed(self) -> int:
         """Seed of this point."""
@@ -62,7 +74,7 @@ class Point:
         if "detuning" in self.values:
             return self.values["detuning"]
         if asked.detuning == WINDOW:
-            return self.case.analysis.detuning
+            return self.range.detuning
         return float(vortex_shedding(self.case).detuning) if asked.detuning == WIND else asked.detuning
 
     def check(self) -> None:

@@ -10,10 +10,12 @@ import numpy as np
 
 from frahm.analysis.ranges import ranges_without_stable_response, unstable_ranges
 from frahm.assessment import fatigue_damage
-from frahm.attractors import Attractor, find_attractors, worst_case
+from frahm.attractors import Attractor, find_attractors, worst_over
 from frahm.attractors.attractor import KINDS
 from frahm.errors import Outcome, ParameterError
 from frahm.response import ResponseCurve, frequency_response, periodic_responses, slow_flow_map
+from frahm.response.exact import exact_curve
+from frahm.response.frequency_response import highest_harmonic
 from frahm.sweep.points import Point
 from frahm.sweep.study import Study
 from frahm.sweep.variables import at_window
@@ -145,9 +147,8 @@ def _slow_flow_curve(point: Point, asked: Any) -> Found:
 
 
 def _exact_curve(point: Point, asked: Any) -> Found:
-    harmonics = point.case.analysis.harmonics
-    window: Any = point.place(asked)
-    curve = frequency_response(point.system, detuning=window, harmonics=harmonics)
+    harmonics, within = highest_harmonic(point.case.analysis.harmonics), point.asked_range(asked)
+    curve = exact_curve(point.system, *within.frequency, harmonics, within.factor)
     return _of_curve(curve, {"saddle_nodes": "saddle-node", "neimark_sackers": "neimark-sacker"})
 
 
@@ -200,10 +201,10 @@ def _responses(point: Point, asked: Any) -> Found:
 
 
 def _worst(point: Point, asked: Any) -> Found:
-    window: Any = point.place(asked)
-    found = worst_case(
-        point.system, detuning=window, samples=asked.samples, min_basin=asked.min_basin, seed=point.seed, workers=1
-    )
+    found = worst_over(
+        point.system, point.asked_range(asked), samples=asked.samples, min_basin=asked.min_basin, seed=point.seed,
+        workers=1,
+    )  # fmt: skip
     if Outcome.INTERRUPTED.value in found.unverified:
         raise KeyboardInterrupt
     return Found(

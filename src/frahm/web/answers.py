@@ -13,7 +13,7 @@ from frahm.web import words
 from frahm.web.controls import DETUNING, controls_of, field_texts, reading, spans, with_sink
 from frahm.web.figures import linear_lines, manifold_part, map_part, slow_part
 from frahm.web.layout import heading
-from frahm.web.scope import has_slow_flow, shedding_detuning
+from frahm.web.scope import detuning_window, has_slow_flow, shedding_detuning
 from frahm.web.sessions import Sessions
 from frahm.web.tuned import bare_response, tuned_mass_damper_response
 
@@ -54,7 +54,7 @@ def _drawn(case: Case, detuning: float, tuned: bool) -> dict[str, Any]:
     shedding = shedding_detuning(case)
     return {
         "problems": {}, "slow": slow, "key": case.digest, "part": part, "status": status, "heading": heading(case),
-        "detuning": detuning, "wind": shedding if abs(shedding) < 1e300 else None, "window": case.analysis.detuning,
+        "detuning": detuning, "wind": shedding if abs(shedding) < 1e300 else None, "window": detuning_window(case),
     }  # fmt: skip
 
 

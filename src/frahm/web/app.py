@@ -19,7 +19,7 @@ from frahm.web.front import HEAD
 from frahm.web.layout import STYLE, heading, page
 from frahm.web.looks import figures
 from frahm.web.presets import PRESETS
-from frahm.web.scope import PLANES, check_shown, has_slow_flow, shedding_detuning, start_detuning
+from frahm.web.scope import PLANES, check_shown, detuning_window, has_slow_flow, shedding_detuning, start_detuning
 from frahm.web.sessions import Job, Session, Sessions
 
 _INDEX = """{%metas%}<title>{%title%}</title>{%favicon%}{%css%}STYLE
@@ -220,7 +220,7 @@ def _add_files(app: Dash, sessions: Sessions) -> None:
 
 def _to_wind(case: Case) -> tuple[Any, str]:
     """Text of the field of the detuning; or none and a notice, if the wind sheds outside the window."""
-    at, (lo, hi) = shedding_detuning(case), case.analysis.detuning
+    at, (lo, hi) = shedding_detuning(case), detuning_window(case)
     if lo <= at <= hi:
         return {DETUNING: shown(at)}, ""
     return no_update, words.wind_outside(at, lo, hi)

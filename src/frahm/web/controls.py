@@ -12,6 +12,7 @@ from frahm.case import Case, CubicLaw, Pipe, PolynomialLaw, Tube, field_table
 from frahm.case.quantities import Label
 from frahm.errors import ParameterError, check_number
 from frahm.units import si_value
+from frahm.web.scope import detuning_window
 
 STEPS = 1000  # positions of a slider
 
@@ -294,7 +295,7 @@ def reading(base: Case, texts: Mapping[str, Any]) -> Reading:
     detuning = math.nan
     try:
         number = read_number(str(texts.get(DETUNING, "")).strip(), "rad/s", DETUNING)
-        lo, hi = case.analysis.detuning
+        lo, hi = detuning_window(case)
         detuning = check_number(DETUNING, number, at_least=lo, at_most=hi, unit="rad/s")
     except ParameterError as error:
         problems[DETUNING] = str(error)
@@ -303,7 +304,7 @@ def reading(base: Case, texts: Mapping[str, Any]) -> Reading:
 
 def detuning_span(case: Case) -> Span:
     """Range of the detuning: the window of the analysis."""
-    return Span(*case.analysis.detuning, False)
+    return Span(*detuning_window(case), False)
 
 
 def field_texts(case: Case, detuning: float) -> dict[str, str]:

@@ -13,6 +13,7 @@ from frahm.response import ResponseCurve
 from frahm.web.drawing import curve_lines, heights, numbers, special_points
 from frahm.web.live import ManifoldLines, manifold_lines, responses_at, slow_curve, stability_map
 from frahm.web.looks import MARK, QUANTITIES, SLOW_KINDS, SYMBOLS, kind_look
+from frahm.web.scope import detuning_window
 from frahm.web.tuned import LinearResponse
 
 Line = dict[str, Any]
@@ -109,5 +110,5 @@ def map_part(case: Case, plane: str, span: tuple[float, float]) -> dict[str, Any
     return {
         "x": numbers(found.detuning), "y": numbers(found.parameter), "z": found.classes.tolist(),
         "title": _TITLES[plane], "range": [float(np.log10(end)) for end in span],
-        "window": list(case.analysis.detuning),
+        "window": list(detuning_window(case)),
     }  # fmt: skip

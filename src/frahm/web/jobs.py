@@ -15,6 +15,7 @@ from frahm.arrays import Floats
 from frahm.case import Case, load_case
 from frahm.errors import Outcome
 from frahm.harmonic_balance import PeriodicResponse
+from frahm.web.scope import detuning_window
 
 Progress = Callable[[str, int, int], None]
 
@@ -34,7 +35,7 @@ def exact_response(case: Case, progress: Progress) -> dict[str, Any]:
     from frahm.web.looks import EXACT_KINDS
 
     harmonics = case.analysis.harmonics
-    curve = frequency_response(case, detuning=case.analysis.detuning, harmonics=harmonics)
+    curve = frequency_response(case, detuning=detuning_window(case), harmonics=harmonics)
     stable, at = curve.largest(stable_only=True)
     return {
         "part": curve_part("exact", EXACT_KINDS, curve),
@@ -52,7 +53,7 @@ def exact_table(case: Case, progress: Progress) -> dict[str, Any]:
     from frahm.exchange import csv_text
     from frahm.response import frequency_response
 
-    curve = frequency_response(case, detuning=case.analysis.detuning, harmonics=case.analysis.harmonics)
+    curve = frequency_response(case, detuning=detuning_window(case), harmonics=case.analysis.harmonics)
     return {"csv": csv_text(curve.to_dataset())}
 
 
@@ -201,7 +202,7 @@ def report(case: Case, progress: Progress) -> dict[str, Any]:
 def warm_up(case: Case, progress: Progress) -> dict[str, Any]:
     """Load what the quick jobs need, so that the first one does not have to."""
     exact_response(case, progress)
-    motion(case, progress, detuning=sum(case.analysis.detuning) / 2)
+    motion(case, progress, detuning=sum(detuning_window(case)) / 2)
     return {}
 
 

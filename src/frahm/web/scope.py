@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from frahm.case import Case, CubicLaw, Pipe
 from frahm.errors import ParameterError
-from frahm.loads import vortex_shedding
+from frahm.loads import operating_range, vortex_shedding
 
 PLANES = ("kappa", "xi2")
 
@@ -35,7 +35,12 @@ def shedding_detuning(case: Case) -> float:
     return vortex_shedding(case).detuning
 
 
+def detuning_window(case: Case) -> tuple[float, float]:
+    """Lowest and highest detuning [rad/s] of the range of operation of a case."""
+    return operating_range(case).detuning
+
+
 def start_detuning(case: Case) -> float:
     """Detuning the page starts with: that of the wind, if it lies in the window."""
-    lo, hi = case.analysis.detuning
+    lo, hi = detuning_window(case)
     return min(hi, max(lo, shedding_detuning(case)))

@@ -9,6 +9,7 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.case import Case
 from frahm.systems import build_system
+from frahm.web.scope import detuning_window
 
 _POINTS = 401
 
@@ -44,7 +45,7 @@ def tuned_mass_damper_response(case: Case) -> LinearResponse:
 
     system = build_system(tuned_case(case))
     damping, stiffness = linear_part(system)
-    detuning = np.linspace(*case.analysis.detuning, _POINTS)
+    detuning = np.linspace(*detuning_window(case), _POINTS)
     W = (case.pipe.frequency + detuning)[:, None, None]
     dynamic = stiffness - W**2 * system.mass + 1j * W * damping
     force = np.broadcast_to(system.forcing[:, None], (_POINTS, system.size, 1))
@@ -55,7 +56,7 @@ def tuned_mass_damper_response(case: Case) -> LinearResponse:
 def bare_response(case: Case) -> LinearResponse:
     """Response of the pipe without any absorber, mode by mode; NaN where it is infinite."""
     system = build_system(case.without_absorbers())
-    detuning = np.linspace(*case.analysis.detuning, _POINTS)
+    detuning = np.linspace(*detuning_window(case), _POINTS)
     mass, damping, stiffness = (np.diag(matrix) for matrix in (system.mass, system.damping, system.stiffness))
     W = (case.pipe.frequency + detuning)[:, None]
     dynamic = stiffness - W**2 * mass + 1j * W * damping
