@@ -3,15 +3,15 @@
 from frahm.loads.amplitudes import (
     AmplitudeEstimate,
     AmplitudeEstimates,
-    ModeFactors,
     amplitude_estimates,
-    eurocode_amplitude,
     forced_amplitude,
     griffin_skop_amplitude,
-    mode_factors,
     sarpkaya_amplitude,
 )
 from frahm.loads.climate import Persistence, WindClimate, persistence, wind_climate
+from frahm.loads.correlation import Antinodes, antinodes, correlation_length
+from frahm.loads.eurocode import eurocode_amplitude
+from frahm.loads.mode_factors import ModeFactors, mode_factors
 from frahm.loads.onset import Criterion, onset_criteria, onset_sentence
 from frahm.loads.operating_range import (
     OperatingRange,
@@ -54,6 +54,7 @@ __all__ = [
     "AIR_VISCOSITY",
     "AmplitudeEstimate",
     "AmplitudeEstimates",
+    "Antinodes",
     "Criterion",
     "ExcitationOverWind",
     "LockInBand",
@@ -69,6 +70,8 @@ __all__ = [
     "WindExcitation",
     "WindRecord",
     "amplitude_estimates",
+    "antinodes",
+    "correlation_length",
     "eurocode_amplitude",
     "excitation_over_wind",
     "excited_bands",

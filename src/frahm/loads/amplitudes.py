@@ -3,57 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from frahm.case import Case, ModeTable, Tube
+from frahm.case import Case
 from frahm.case.reynolds import LIFT_CURVES
-from frahm.errors import check_choice, check_number
+from frahm.errors import check_number
+from frahm.loads.correlation import correlation_length
+from frahm.loads.eurocode import METHOD_1, eurocode_amplitude
+from frahm.loads.mode_factors import ModeFactors, mode_factors
 from frahm.loads.reynolds import published_curve, strouhal_curve
 from frahm.loads.similarity import lock_in_band, scruton_number, skop_griffin_number
 from frahm.loads.vortex import reynolds_number, vortex_shedding
 from frahm.loads.wake_oscillator import WakeOscillator
 
 _NAMES = ("EN 1991-1-4, method 1", "Griffin and Skop", "Sarpkaya", "Facchinetti et al., Eq. 35")
-SPANS = ("rigid", "cantilever", "simple span")
-_ITERATIONS = 200
-_GAUSS, _PANELS = 8, 64  # nodes a panel, panels: exact to rounding for the shapes of beams
-_CANTILEVER = 1.305  # gamma of the first mode of a cantilever
-
-
-@dataclass(frozen=True)
-class ModeFactors:
-    """What the shape of a mode does to the estimates; the defaults are those of a rigid pipe, see `mode_factors`.
-
-    Parameters
-    ----------
-    load : float
-        g = int |phi| / int phi^2 [-].
-    amplitude : float
-        gamma = max |phi| sqrt(int phi^2 / int phi^4) [-], of the estimates of Griffin and Skop and of Sarpkaya.
-    span : {"rigid", "cantilever", "simple span"}
-        Which correlation factor EN 1991-1-4 gives.
-    slenderness : float, optional
-        Length of the span over its diameter [-]; without it the lift is in phase all along, which is the safe side.
-    mass_per_length : float, optional
-        m_e = int m phi^2 / int phi^2 [kg/m]; that of the case by default.
-    """
-
-    load: float = 1.0
-    amplitude: float = 1.0
-    span: str = "rigid"
-    slenderness: float | None = None
-    mass_per_length: float | None = None
-
-    def __post_init__(self) -> None:
-        check_number("load", self.load, above=0)
-        check_number("amplitude", self.amplitude, above=0)
-        check_choice("span", self.span, SPANS)
-        for name in ("slenderness", "mass_per_length"):
-            if getattr(self, name) is not None:
-                check_number(name, getattr(self, name), above=0)
 
 
 @dataclass(frozen=True)
@@ -102,45 +65,6 @@ class AmplitudeEstimates:
         return self.diameter * min(ratios), self.diameter * max(ratios)
 
 
-def mode_factors(case: Case) -> ModeFactors:
-    """Factors of the governing mode of a case: exact for one mode and for tubes.
-
-    A table of modes knows its shapes at a few sections only: gamma is then that of a cantilever, the largest of the
-    usual shapes, and the lift is taken to be in phase all along, as it is for spans EN 1991-1-4 gives no factor for.
-    """
-    pipe = case.pipe
-    if isinstance(pipe, Tube):
-        modes, mode = pipe.beam_modes, pipe.governing_mode - 1
-        nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
-        edges = np.linspace(0.0, pipe.length, _PANELS + 1)
-        half = 0.5 * pipe.length / _PANELS
-        shape = modes.shape((edges[:-1, None] + half * (1 + nodes)).ravel())[:, mode]
-        fourth = half * float(np.tile(weights, _PANELS) @ shape**4)
-        span = _span(pipe)
-        return ModeFactors(
-            load=float(modes.participations[mode]),
-            amplitude=math.sqrt(float(modes.squares[mode]) / fourth),
-            span=span,
-            slenderness=None if span == "rigid" else pipe.length / pipe.diameter,
-        )
-    if isinstance(pipe, ModeTable):
-        modal, mass = pipe.modal, pipe.mass_per_length
-        load = 1.0 if mass is None else float(modal.lift_lengths[0] * mass / modal.masses[0])
-        return ModeFactors(load=load, amplitude=_CANTILEVER)
-    return ModeFactors()
-
-
-def _span(tube: Tube) -> str:
-    """The span EN 1991-1-4 gives a correlation factor for, "rigid" if it gives none."""
-    held = [support for support in tube.supports if support.kind != "free"]
-    if tube.governing_mode != 1 or tube.point_masses:
-        return "rigid"
-    if len(held) == 1 and held[0].kind == "clamped" and held[0].at in (0.0, tube.length):
-        return "cantilever"
-    ends = {support.at for support in held if support.kind == "pinned" and not support.rotation}
-    return "simple span" if len(held) == 2 and ends == {0.0, tube.length} else "rigid"
-
-
 def forced_amplitude(
     lift: float, mass: float, damping_ratio: float, frequency: float, load_factor: float = 1.0
 ) -> float:
@@ -177,75 +101,6 @@ def sarpkaya_amplitude(skop_griffin: float, amplitude_factor: float = 1.0) -> fl
     return 0.32 * amplitude_factor / math.sqrt(0.06 + S**2)
 
 
-def correlation_length(amplitude_ratio: float) -> float:
-    """L_j/D of EN 1991-1-4: 6 below A/D = 0.1, 4.8 + 12 A/D to 0.6, then 12 [-]."""
-    y = check_number("amplitude_ratio", amplitude_ratio, at_least=0)
-    return min(max(6.0, 4.8 + 12 * y), 12.0)
-
-
-def correlation_factor(span: str, length: float, slenderness: float | None) -> float:
-    """Effective correlation length factor K_w of EN 1991-1-4 [-].
-
-    Parameters
-    ----------
-    span : {"rigid", "cantilever", "simple span"}
-        The expression for the cantilever was read in the source, that of the simple span is secondary; for the rigid
-        pipe it is the share of its length that is in phase.
-    length : float
-        L_j/D [-].
-    slenderness : float or None
-        l/D [-]; None if the lift is in phase all along.
-    """
-    if slenderness is None:
-        return 1.0
-    r = min(1.0, check_number("length", length, above=0) / check_number("slenderness", slenderness, above=0))
-    if check_choice("span", span, SPANS) == "cantilever":
-        return min(0.6, 3 * r * (1 - r + r**2 / 3))
-    return math.cos(math.pi / 2 * (1 - r)) if span == "simple span" else r
-
-
-def eurocode_amplitude(
-    scruton: float,
-    strouhal: float,
-    lift_coefficient: float,
-    *,
-    load_factor: float = 1.0,
-    correlation: Callable[[float], float] | None = None,
-) -> tuple[float, float]:
-    """A/D = K K_w c_lat / (St^2 Sc) of method 1 of EN 1991-1-4, iterated over the correlation length.
-
-    Parameters
-    ----------
-    scruton : float
-        Sc = K_s [-].
-    strouhal : float
-        St [-].
-    lift_coefficient : float
-        c_lat [-].
-    load_factor : float
-        g = int |phi| / int phi^2; K = g / (4 pi).
-    correlation : callable, optional
-        K_w as a function of L_j/D; 1 by default.
-
-    Returns
-    -------
-    (float, float)
-        A/D [-] and L_j/D at it [-]. Where the iteration has more than one end, the largest; infinite without damping.
-    """
-    Sc = check_number("scruton", scruton, at_least=0)
-    if Sc == 0:
-        return math.inf, 12.0
-    Kw = correlation or (lambda length: 1.0)
-    scale = load_factor * lift_coefficient / (4 * math.pi * check_number("strouhal", strouhal, above=0) ** 2 * Sc)
-    ratio = scale * Kw(12.0)  # from above: K_w grows with the amplitude, so the largest solution is met first
-    for _ in range(_ITERATIONS):
-        new = scale * Kw(correlation_length(ratio))
-        if abs(new - ratio) <= 1e-14 * ratio:
-            break
-        ratio = new
-    return ratio, correlation_length(ratio)
-
-
 def amplitude_estimates(case: Case, factors: ModeFactors | None = None) -> AmplitudeEstimates:
     """Largest amplitude of the pipe of a case without absorbers, by every estimate.
 
@@ -275,9 +130,10 @@ def amplitude_estimates(case: Case, factors: ModeFactors | None = None) -> Ampli
     if mass is None:
         return AmplitudeEstimates((_forced(case), *map(_unknown, _NAMES)), pipe.diameter)
     Ks = scruton_number(mass, pipe.damping_ratio, pipe.diameter, case.wind.air_density)
-    St = float(strouhal_curve(case.wind).value(reynolds_number(critical, pipe.diameter, case.wind.viscosity)))
+    Re = reynolds_number(critical, pipe.diameter, case.wind.viscosity)
+    St = float(strouhal_curve(case.wind).value(Re))
     SG = skop_griffin_number(Ks, St)
-    estimates = (_forced(case), _eurocode(case, given, Ks, St, critical), *_empirical(given, SG), _facchinetti(Ks))
+    estimates = (_forced(case), _method_1(given, Ks, St, Re), *_empirical(given, SG), _facchinetti(Ks))
     return AmplitudeEstimates(estimates, pipe.diameter)
 
 
@@ -295,21 +151,20 @@ def _forced(case: Case) -> AmplitudeEstimate:
                              "verified", source)  # fmt: skip
 
 
-def _eurocode(case: Case, factors: ModeFactors, Ks: float, St: float, critical: float) -> AmplitudeEstimate:
-    curve = published_curve("en1991", LIFT_CURVES)
-    Re = reynolds_number(critical, case.pipe.diameter, case.wind.viscosity)
-    lift = float(curve.value(Re))
-    name, source = _NAMES[0], "annex E.1.5.2; c_lat,0 and K_w of the cantilever read in public code"
+def _method_1(factors: ModeFactors, Ks: float, St: float, Re: float) -> AmplitudeEstimate:
+    lift = float(published_curve("en1991", LIFT_CURVES).value(Re))
     if math.isnan(lift):
-        detail = f"c_lat,0 is not given at Re = {Re:.3g}."
-        return AmplitudeEstimate(name, math.nan, detail, "partly secondary", source)
-    ratio, length = eurocode_amplitude(
-        Ks, St, lift, load_factor=factors.load,
-        correlation=lambda length: correlation_factor(factors.span, length, factors.slenderness),
-    )  # fmt: skip
-    where = f"L_j/D = {length:.3g}" if factors.slenderness is not None else "in phase all along"
+        return AmplitudeEstimate(_NAMES[0], math.nan, f"c_lat,0 is not given at Re = {Re:.3g}.", *METHOD_1)
+    known = factors.antinodes
+    ratio, Kw = eurocode_amplitude(
+        Ks, St, lift, load_factor=factors.load, correlation=None if known is None else known.correlation_factor
+    )
+    where = "in step all along, because the case does not know the shape of the mode well enough"
+    if known is not None:
+        at = "the antinode" if known.count == 1 else f"the largest of {known.count} antinodes"
+        where = f"K_w = {Kw:.3g}, L_j/D = {correlation_length(min(ratio, 1.0)):.3g} at {at}"
     detail = f"c_lat = {lift:.3g} at Re = {Re:.3g}, St = {St:.3g}, Sc = {Ks:.3g}, {where}."
-    return AmplitudeEstimate(name, ratio, detail, "partly secondary", source)
+    return AmplitudeEstimate(_NAMES[0], ratio, detail, *METHOD_1)
 
 
 def _empirical(factors: ModeFactors, SG: float) -> tuple[AmplitudeEstimate, AmplitudeEstimate]:
