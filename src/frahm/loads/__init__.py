@@ -10,7 +10,7 @@ from frahm.loads.amplitudes import (
 )
 from frahm.loads.climate import Persistence, WindClimate, persistence, wind_climate
 from frahm.loads.correlation import Antinodes, antinodes, correlation_length
-from frahm.loads.eurocode import eurocode_amplitude
+from frahm.loads.eurocode import SpectralAmplitude, eurocode_amplitude, spectral_amplitude
 from frahm.loads.mode_factors import ModeFactors, mode_factors
 from frahm.loads.onset import Criterion, onset_criteria, onset_sentence
 from frahm.loads.operating_range import (
@@ -63,6 +63,7 @@ __all__ = [
     "Persistence",
     "ReynoldsCurve",
     "Similarity",
+    "SpectralAmplitude",
     "VortexShedding",
     "WakeOscillator",
     "WakeState",
@@ -96,6 +97,7 @@ __all__ = [
     "similarity",
     "site_winds",
     "skop_griffin_number",
+    "spectral_amplitude",
     "spectral_density",
     "speed_window",
     "split_resonances",

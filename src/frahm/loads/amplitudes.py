@@ -9,14 +9,16 @@ from frahm.case import Case
 from frahm.case.reynolds import LIFT_CURVES
 from frahm.errors import check_number
 from frahm.loads.correlation import correlation_length
-from frahm.loads.eurocode import METHOD_1, eurocode_amplitude
+from frahm.loads.eurocode import METHOD_1, METHOD_2, eurocode_amplitude, spectral_amplitude
 from frahm.loads.mode_factors import ModeFactors, mode_factors
 from frahm.loads.reynolds import published_curve, strouhal_curve
 from frahm.loads.similarity import lock_in_band, scruton_number, skop_griffin_number
 from frahm.loads.vortex import reynolds_number, vortex_shedding
 from frahm.loads.wake_oscillator import WakeOscillator
 
-_NAMES = ("EN 1991-1-4, method 1", "Griffin and Skop", "Sarpkaya", "Facchinetti et al., Eq. 35")
+_NAMES = (
+    "EN 1991-1-4, method 1", "EN 1991-1-4, method 2", "Griffin and Skop", "Sarpkaya", "Facchinetti et al., Eq. 35"
+)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -113,8 +115,8 @@ def amplitude_estimates(case: Case, factors: ModeFactors | None = None) -> Ampli
     Returns
     -------
     AmplitudeEstimates
-        Forced by the lift of the case, EN 1991-1-4 method 1, Griffin and Skop, Sarpkaya, and Facchinetti et al.; the
-        first one knows the mode of the case anyway, and the last one is for a rigid pipe, whatever the factors.
+        Forced by the lift of the case, EN 1991-1-4 methods 1 and 2, Griffin and Skop, Sarpkaya, and Facchinetti et al.;
+        the first one knows the mode of the case anyway, and the last one is for a rigid pipe, whatever the factors.
 
     Raises
     ------
@@ -133,7 +135,9 @@ def amplitude_estimates(case: Case, factors: ModeFactors | None = None) -> Ampli
     Re = reynolds_number(critical, pipe.diameter, case.wind.viscosity)
     St = float(strouhal_curve(case.wind).value(Re))
     SG = skop_griffin_number(Ks, St)
-    estimates = (_forced(case), _method_1(given, Ks, St, Re), *_empirical(given, SG), _facchinetti(Ks))
+    mass_ratio = mass / (case.wind.air_density * pipe.diameter**2)
+    estimates = (_forced(case), _method_1(given, Ks, St, Re), _method_2(given, Ks, St, Re, mass_ratio),
+                 *_empirical(given, SG), _facchinetti(Ks))  # fmt: skip
     return AmplitudeEstimates(estimates, pipe.diameter)
 
 
@@ -167,12 +171,25 @@ def _method_1(factors: ModeFactors, Ks: float, St: float, Re: float) -> Amplitud
     return AmplitudeEstimate(_NAMES[0], ratio, detail, *METHOD_1)
 
 
+def _method_2(factors: ModeFactors, Ks: float, St: float, Re: float, mass_ratio: float) -> AmplitudeEstimate:
+    slenderness = factors.cantilever_slenderness
+    if slenderness is None:
+        detail = "It is for a cantilever in its first mode, which this pipe is not, or is not known to be."
+        return AmplitudeEstimate(_NAMES[1], math.nan, detail, *METHOD_2)
+    found = spectral_amplitude(Ks, St, Re, mass_ratio, slenderness)
+    detail = (
+        f"sigma/D = {found.deviation:.3g}, k_p = {found.peak_factor:.3g}, K_a = {found.damping:.3g} without turbulence "
+        f"at Re = {Re:.3g}, Sc/(4 pi) = {Ks / (4 * math.pi):.3g}, m_e/(rho D^2) = {mass_ratio:.3g}."
+    )
+    return AmplitudeEstimate(_NAMES[1], found.ratio, detail, *METHOD_2)
+
+
 def _empirical(factors: ModeFactors, SG: float) -> tuple[AmplitudeEstimate, AmplitudeEstimate]:
     detail = f"S_G = {SG:.3g}, gamma = {factors.amplitude:.4g}."
     return (
-        AmplitudeEstimate(_NAMES[1], griffin_skop_amplitude(SG, factors.amplitude), detail,
+        AmplitudeEstimate(_NAMES[2], griffin_skop_amplitude(SG, factors.amplitude), detail,
                           "secondary", "quoted from memory"),
-        AmplitudeEstimate(_NAMES[2], sarpkaya_amplitude(SG, factors.amplitude), detail,
+        AmplitudeEstimate(_NAMES[3], sarpkaya_amplitude(SG, factors.amplitude), detail,
                           "secondary", "quoted from memory"),
     )  # fmt: skip
 
@@ -181,7 +198,7 @@ def _facchinetti(Ks: float) -> AmplitudeEstimate:
     wake = WakeOscillator()
     SG = skop_griffin_number(Ks, wake.strouhal)
     return AmplitudeEstimate(
-        _NAMES[3], wake.lock_in_amplitude(SG),
+        _NAMES[4], wake.lock_in_amplitude(SG),
         f"S_G = {SG:.3g} with the published constants (St = {wake.strouhal:g}, C_L0 = {wake.lift_coefficient:g}).",
         "verified", "doi 10.1016/j.jfluidstructs.2003.12.004",
     )  # fmt: skip

@@ -48,6 +48,11 @@ class Antinodes:
         amplitude_ratio : float
             A/D where the mode moves most [-]; it sets the length L_j at every antinode, see `correlation_length`.
 
+        Raises
+        ------
+        ParameterError
+            If the amplitude is negative.
+
         Notes
         -----
         EN 1991-1-4, E.1.5.2.4. Every antinode is driven at the same wind speed, since pipe and wind are the same all
@@ -101,6 +106,17 @@ def _lows(size: Floats) -> np.ndarray:
 
 
 def correlation_length(amplitude_ratio: float) -> float:
-    """L_j/D of EN 1991-1-4: 6 below A/D = 0.1, 4.8 + 12 A/D to 0.6, then 12 [-]."""
+    """L_j/D of EN 1991-1-4: 6 below A/D = 0.1, 4.8 + 12 A/D to 0.6, then 12 [-].
+
+    Parameters
+    ----------
+    amplitude_ratio : float
+        A/D at the antinode [-].
+
+    Raises
+    ------
+    ParameterError
+        If the amplitude is negative.
+    """
     y = check_number("amplitude_ratio", amplitude_ratio, at_least=0)
     return min(max(6.0, 4.8 + 12 * y), 12.0)

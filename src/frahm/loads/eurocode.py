@@ -1,12 +1,15 @@
-"""Cross-wind vibration after annex E of EN 1991-1-4.
+"""Cross-wind vibration after annex E of EN 1991-1-4: both methods for the amplitude.
 
-What was read where is said in `METHOD_1`: the standard itself was not at hand.
+What was read where is said in `METHOD_1` and `METHOD_2`: the standard itself was not at hand.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
 
 from frahm.errors import check_number
 
@@ -15,6 +18,15 @@ METHOD_1 = (
     "annex E.1.5.2; c_lat,0, L_j, K, and K_w of the cantilever with its limit 0.6 read in public code (E. Simon, RWTH "
     "Aachen, 2025), K_w of other shapes quoted from memory",
 )
+METHOD_2 = (
+    "secondary",
+    "annex E.1.5.3; closed form, K_a,max, a_L and k_p read in two public codes (E. Simon, RWTH Aachen, 2025; "
+    "O. M. Ellingsen, 2022), C_c quoted from memory",
+)
+LIMITING_DEVIATION = 0.4  # a_L: sigma/b at which the wind no longer takes damping away
+_LOG_REYNOLDS = np.log([1e5, 5e5, 1e6])
+_STRENGTH = (0.02, 0.005, 0.01)  # C_c
+_LARGEST_DAMPING = (2.0, 0.5, 1.0)  # K_a,max
 _ITERATIONS = 200
 
 
@@ -45,6 +57,11 @@ def eurocode_amplitude(
     -------
     (float, float)
         A/D [-] and K_w [-] at it. Where the iteration has more than one end, the largest; infinite without damping.
+
+    Raises
+    ------
+    ParameterError
+        If a number is out of bounds.
     """
     Sc = check_number("scruton", scruton, at_least=0)
     Kw = correlation or (lambda ratio: 1.0)
@@ -58,3 +75,78 @@ def eurocode_amplitude(
             break
         ratio = new
     return ratio, Kw(ratio)
+
+
+@dataclass(frozen=True)
+class SpectralAmplitude:
+    """Result of method 2 of EN 1991-1-4.
+
+    Attributes
+    ----------
+    deviation : float
+        Standard deviation of the displacement over the diameter, sigma/b, where the pipe moves most [-].
+    peak_factor : float
+        k_p [-].
+    damping : float
+        Aerodynamic damping parameter K_a [-]; the pipe locks in where it exceeds Sc/(4 pi).
+    """
+
+    deviation: float
+    peak_factor: float
+    damping: float
+
+    @property
+    def ratio(self) -> float:
+        """Largest amplitude over diameter, k_p sigma/b [-]."""
+        return self.peak_factor * self.deviation
+
+
+def spectral_amplitude(
+    scruton: float, strouhal: float, reynolds: float, mass_ratio: float, slenderness: float
+) -> SpectralAmplitude:
+    """Method 2 of EN 1991-1-4 (E.1.5.3), the spectral model of Vickery and Basu: a cantilever in its first mode.
+
+    Parameters
+    ----------
+    scruton : float
+        Sc [-].
+    strouhal : float
+        St [-].
+    reynolds : float
+        Re at the critical wind speed [-].
+    mass_ratio : float
+        m_e / (rho b^2) [-].
+    slenderness : float
+        h/b [-].
+
+    Returns
+    -------
+    SpectralAmplitude
+        (sigma/b)^2 = c_1 + sqrt(c_1^2 + c_2), c_1 = (a_L^2/2) [1 - Sc/(4 pi K_a)],
+        c_2 = (a_L^2/K_a) (C_c^2/St^4) (rho b^2/m_e) (b/h); k_p = sqrt(2) {1 + 1.2 arctan[0.75 (Sc/(4 pi K_a))^4]}.
+
+    Raises
+    ------
+    ParameterError
+        If a number is out of bounds.
+
+    Notes
+    -----
+    K_a is K_a,max, that of a wind without turbulence, which is the safe side. C_c (0.02, 0.005, 0.01) and K_a,max (2,
+    0.5, 1) are linear in ln Re between Re = 1e5, 5e5 and 1e6 and constant beyond; a_L = 0.4. Where the pipe locks in,
+    sigma/b hangs on a_L and K_a,max and hardly on C_c.
+    """
+    Sc = check_number("scruton", scruton, at_least=0)
+    St = check_number("strouhal", strouhal, above=0)
+    log_Re = math.log(check_number("reynolds", reynolds, above=0))
+    strength = float(np.interp(log_Re, _LOG_REYNOLDS, _STRENGTH))
+    Ka = float(np.interp(log_Re, _LOG_REYNOLDS, _LARGEST_DAMPING))
+    slender = check_number("mass_ratio", mass_ratio, above=0) * check_number("slenderness", slenderness, above=0)
+    share = Sc / (4 * math.pi * Ka)
+    c1 = 0.5 * LIMITING_DEVIATION**2 * (1 - share)
+    c2 = LIMITING_DEVIATION**2 / Ka * strength**2 / St**4 / slender
+    # c1 + root loses every digit where c1 is large and negative: then c2/(root - c1), the same number
+    root = math.hypot(c1, math.sqrt(c2))
+    square = c1 + root if c1 >= 0 else c2 / (root - c1)
+    kp = math.sqrt(2) * (1 + 1.2 * math.atan(0.75 * share**4))
+    return SpectralAmplitude(math.sqrt(square), kp, Ka)

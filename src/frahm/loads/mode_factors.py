@@ -30,6 +30,8 @@ class ModeFactors:
         gamma = max |phi| sqrt(int phi^2 / int phi^4) [-], of the estimates of Griffin and Skop and of Sarpkaya.
     antinodes : Antinodes, optional
         Where along the pipe vortices shed in step; without it they do all along, which is the safe side.
+    cantilever_slenderness : float, optional
+        Length over diameter of a cantilever in its first mode [-]; None for every other pipe.
     mass_per_length : float, optional
         m_e = int m phi^2 / int phi^2 [kg/m]; that of the case by default.
     """
@@ -37,13 +39,15 @@ class ModeFactors:
     load: float = 1.0
     amplitude: float = 1.0
     antinodes: Antinodes | None = None
+    cantilever_slenderness: float | None = None
     mass_per_length: float | None = None
 
     def __post_init__(self) -> None:
         check_number("load", self.load, above=0)
         check_number("amplitude", self.amplitude, above=0)
-        if self.mass_per_length is not None:
-            check_number("mass_per_length", self.mass_per_length, above=0)
+        for name in ("cantilever_slenderness", "mass_per_length"):
+            if getattr(self, name) is not None:
+                check_number(name, getattr(self, name), above=0)
 
 
 def mode_factors(case: Case) -> ModeFactors:
@@ -58,10 +62,12 @@ def mode_factors(case: Case) -> ModeFactors:
     if isinstance(pipe, Tube):
         mode = pipe.governing_mode - 1
         shape = pipe.beam_modes.shape(_middles(0.0, pipe.length))[:, mode]
+        slenderness = pipe.length / pipe.diameter
         return ModeFactors(
             load=float(pipe.beam_modes.participations[mode]),
             amplitude=_amplitude_factor(shape),
-            antinodes=antinodes(shape, pipe.length / pipe.diameter),
+            antinodes=antinodes(shape, slenderness),
+            cantilever_slenderness=slenderness if _is_cantilever(pipe) else None,
         )
     if isinstance(pipe, ModeTable):
         modal, mass = pipe.modal, pipe.mass_per_length
@@ -78,6 +84,12 @@ def _middles(first: float, last: float) -> Floats:
 def _amplitude_factor(shape: Floats) -> float:
     """gamma of a shape on equal cells whose largest displacement is 1 [-]."""
     return float(np.sqrt(np.sum(shape**2) / np.sum(shape**4)))
+
+
+def _is_cantilever(tube: Tube) -> bool:
+    """Whether a tube is held at one end only and vibrates in its first mode."""
+    held = [support.at for support in tube.supports if support.kind != "free"]
+    return tube.governing_mode == 1 and len(held) == 1 and held[0] in (0.0, tube.length)
 
 
 def _of_table(table: ModeTable, load: float) -> ModeFactors | None:

@@ -12,6 +12,7 @@ from frahm.loads import (
     correlation_length,
     eurocode_amplitude,
     mode_factors,
+    spectral_amplitude,
 )
 
 CASE = frahm.load_case("jacket-pipe-elastic").without_absorbers()
@@ -83,6 +84,21 @@ def test_a_shape_that_is_none_is_refused(shape):
         antinodes([1.0], 0.0)
 
 
+@pytest.mark.parametrize(
+    ("name", "call"),
+    [
+        ("amplitude_ratio", lambda: antinodes([1.0], 10.0).correlation_factor(-0.1)),
+        ("scruton", lambda: eurocode_amplitude(-1.0, 0.2, 0.7)),
+        ("strouhal", lambda: spectral_amplitude(5.0, 0.0, 1e5, 300.0, 40.0)),
+        ("reynolds", lambda: spectral_amplitude(5.0, 0.2, 0.0, 300.0, 40.0)),
+        ("slenderness", lambda: spectral_amplitude(5.0, 0.2, 1e5, 300.0, math.inf)),
+    ],
+)
+def test_numbers_out_of_bounds_are_refused_by_name(name, call):
+    with pytest.raises(frahm.ParameterError, match=name):
+        call()
+
+
 def test_tubes_are_integrated_over_their_textbook_shapes():
     beta = 3.9266023
     sigma = (math.cosh(beta) - math.cos(beta)) / (math.sinh(beta) - math.sin(beta))
@@ -141,6 +157,7 @@ def test_a_table_of_modes_is_integrated_where_it_resolves_the_shape():
             exact.antinodes.correlation_factor(0.0), rel=0.01
         )
         assert (known.load, known.amplitude) == pytest.approx((exact.load, exact.amplitude), rel=2e-3)
+        assert known.cantilever_slenderness is None  # a table does not say how the pipe is held
     coarse = table_of(CASE, [0.0, 20.0, 31.2])
     assert mode_factors(coarse).antinodes is None
     assert mode_factors(table_of(CASE, [31.2])).antinodes is None
@@ -178,3 +195,38 @@ def test_method_1_ends_at_its_own_fixed_point():
         assert Kw == shape.correlation_factor(ratio)
         assert ratio == pytest.approx(1.566 / (4 * math.pi) * Kw * 0.7 / (0.04 * scruton), rel=1e-12)
     assert eurocode_amplitude(0.0, 0.2, 0.7)[0] == math.inf
+
+
+@pytest.mark.parametrize("scruton", [0.0, 2.0, 12.0, 25.2, 80.0, 4000.0])
+def test_method_2_solves_its_own_implicit_equation(scruton):
+    found = spectral_amplitude(scruton, 0.18, 2e4, 300.0, 40.0)
+    y = found.deviation
+    left = scruton / (4 * math.pi) - found.damping * (1 - (y / 0.4) ** 2)
+    assert left > 0
+    assert y == pytest.approx(0.02 / 0.18**2 / math.sqrt(left) / math.sqrt(300.0 * 40.0), rel=1e-8)
+
+
+def test_constants_and_limits_of_method_2():
+    def of(reynolds, scruton=0.0):
+        return spectral_amplitude(scruton, 0.18, reynolds, 300.0, 40.0)
+
+    assert [of(Re).damping for Re in (1e4, 1e5, 5e5, 1e6, 1e8)] == pytest.approx([2, 2, 0.5, 1, 1])
+    assert of(math.sqrt(1e5 * 5e5)).damping == pytest.approx(1.25)
+    assert of(1e4).deviation == pytest.approx(0.4, rel=0.01)  # no damping: the limiting amplitude, a pure sine
+    assert of(1e4).peak_factor == math.sqrt(2)
+    assert of(1e4, 1e6).peak_factor == pytest.approx(math.sqrt(2) * (1 + 0.6 * math.pi))  # far from lock-in
+    strengths = [of(Re, 1e6).deviation for Re in (1e5, 5e5, 1e6)]  # where the damping of the wind counts for nothing
+    assert np.array(strengths) / strengths[0] == pytest.approx([1, 0.25, 0.5], rel=1e-4)
+
+
+def test_method_2_is_for_cantilevers_in_their_first_mode_only():
+    row = amplitude_estimates(CASE).estimates[2]
+    assert row.name == "EN 1991-1-4, method 2"
+    assert row.standing == "secondary"
+    assert 0.2 < row.ratio < 0.4 * math.sqrt(2)
+    others = (tube(ENDS["clamped"], ENDS["pinned"]), tube(ENDS["clamped"], governing_mode=2), "jacket-pipe")
+    for other in others:
+        case = frahm.load_case(other) if isinstance(other, str) else other
+        row = amplitude_estimates(case).estimates[2]
+        assert math.isnan(row.ratio)
+        assert "cantilever in its first mode" in row.detail
