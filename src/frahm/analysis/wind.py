@@ -12,6 +12,7 @@ from frahm.loads import (
     AmplitudeEstimates,
     LockInBand,
     amplitude_estimates,
+    load_cycles,
     lock_in_band,
     onset_criteria,
     onset_sentence,
@@ -40,6 +41,7 @@ def wind(work: Work) -> Section:
         "estimates": _estimates(estimates),
         "interval": list(estimates.interval),
         "computed": computed,
+        "load_cycles": dataclasses.asdict(load_cycles(case)),
         "build_up_time": 1 / rate if rate else math.inf,
     }
     return Section(results={"wind": results}, notes=tuple(_notes(work, band)))

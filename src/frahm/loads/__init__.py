@@ -10,7 +10,7 @@ from frahm.loads.amplitudes import (
 )
 from frahm.loads.climate import Persistence, WindClimate, persistence, wind_climate
 from frahm.loads.correlation import Antinodes, antinodes, correlation_length
-from frahm.loads.eurocode import SpectralAmplitude, eurocode_amplitude, spectral_amplitude
+from frahm.loads.eurocode import LoadCycles, SpectralAmplitude, eurocode_amplitude, load_cycles, spectral_amplitude
 from frahm.loads.mode_factors import ModeFactors, mode_factors
 from frahm.loads.onset import Criterion, onset_criteria, onset_sentence
 from frahm.loads.operating_range import (
@@ -57,6 +57,7 @@ __all__ = [
     "Antinodes",
     "Criterion",
     "ExcitationOverWind",
+    "LoadCycles",
     "LockInBand",
     "ModeFactors",
     "OperatingRange",
@@ -81,6 +82,7 @@ __all__ = [
     "griffin_skop_amplitude",
     "lift_amplitude",
     "lift_curve",
+    "load_cycles",
     "lock_in_band",
     "mode_factors",
     "onset_criteria",

@@ -1,6 +1,6 @@
-"""Cross-wind vibration after annex E of EN 1991-1-4: both methods for the amplitude.
+"""Cross-wind vibration after annex E of EN 1991-1-4: both methods for the amplitude, and the number of load cycles.
 
-What was read where is said in `METHOD_1` and `METHOD_2`: the standard itself was not at hand.
+What was read where is said in `METHOD_1`, `METHOD_2` and `CYCLES`: the standard itself was not at hand.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frahm.case import Case, Weibull
 from frahm.errors import check_number
+from frahm.loads.similarity import lock_in_band
 
 METHOD_1 = (
     "partly secondary",
@@ -23,6 +25,10 @@ METHOD_2 = (
     "annex E.1.5.3; closed form, K_a,max, a_L and k_p read in two public codes (E. Simon, RWTH Aachen, 2025; "
     "O. M. Ellingsen, 2022), C_c quoted from memory",
 )
+CYCLES = ("secondary", "annex E.1.5.2.6, quoted from memory; for k = 2 it follows from the Rayleigh distribution")
+
+BAND_WIDTH = 0.3  # eps_0, of the wind speeds that drive the vibration
+LEAST_CYCLES = 1e4
 LIMITING_DEVIATION = 0.4  # a_L: sigma/b at which the wind no longer takes damping away
 _LOG_REYNOLDS = np.log([1e5, 5e5, 1e6])
 _STRENGTH = (0.02, 0.005, 0.01)  # C_c
@@ -150,3 +156,68 @@ def spectral_amplitude(
     square = c1 + root if c1 >= 0 else c2 / (root - c1)
     kp = math.sqrt(2) * (1 + 1.2 * math.atan(0.75 * share**4))
     return SpectralAmplitude(math.sqrt(square), kp, Ka)
+
+
+@dataclass(frozen=True)
+class LoadCycles:
+    """Number of load cycles of the vibration at resonance.
+
+    Attributes
+    ----------
+    number : float
+        N [-]; NaN if it cannot be said.
+    detail : str
+        The numbers that went in, as a sentence, or why there is none.
+    standing, source : str
+        As of an `AmplitudeEstimate`.
+    """
+
+    number: float
+    detail: str
+    standing: str
+    source: str
+
+
+def load_cycles(case: Case) -> LoadCycles:
+    """N = 2 T n eps_0 (v_crit/v_0)^2 exp[-(v_crit/v_0)^2] of EN 1991-1-4 (E.1.5.2.6), at least 10^4.
+
+    v_0 is sqrt(2) times the most frequent wind speed of the Weibull distribution of the case; a table counts as the
+    Rayleigh distribution of the same mean square speed, for which v_0 is the root of that. Winds from all directions
+    count. For k = 2 the formula is the time in a band of speeds of the width eps_0 v_crit, times the frequency n.
+
+    Parameters
+    ----------
+    case : Case
+    """
+    climate, critical = case.climate, lock_in_band(case).resonance
+    if climate is None:
+        return _no_cycles("The case has no section climate.")
+    if math.isnan(critical):
+        return _no_cycles("The tables over the Reynolds number do not reach the resonance.")
+    if climate.weibull is not None:
+        speed, how = math.sqrt(2) * _most_frequent(climate.weibull), "of the Weibull distribution"
+        if speed == 0:
+            return _no_cycles("The most frequent wind of a Weibull distribution with k <= 1 is a calm.")
+    else:
+        total = math.fsum(row.probability for row in climate.table)
+        speed = math.sqrt(math.fsum(row.probability * row.speed**2 for row in climate.table) / total)
+        how = "of the Rayleigh distribution with the mean square speed of the table"
+    n = case.pipe.frequency / (2 * math.pi)
+    square = (critical / speed) ** 2
+    number = 2 * climate.duration * n * BAND_WIDTH * square * math.exp(-square)
+    least = f"; the formula gives {number:.3g}, the least to count is {LEAST_CYCLES:g}" if number < LEAST_CYCLES else ""
+    detail = (
+        f"T = {climate.duration:.3g} s, n = {n:.4g} Hz, eps_0 = {BAND_WIDTH:g}, v_crit = {critical:.4g} m/s, "
+        f"v_0 = {speed:.4g} m/s {how}{least}."
+    )
+    return LoadCycles(max(number, LEAST_CYCLES), detail, *CYCLES)
+
+
+def _no_cycles(why: str) -> LoadCycles:
+    return LoadCycles(math.nan, why, *CYCLES)
+
+
+def _most_frequent(weibull: Weibull) -> float:
+    """Wind speed where the density of a Weibull distribution is largest [m/s]."""
+    c, k = weibull.scale, weibull.shape
+    return c * ((k - 1) / k) ** (1 / k) if k > 1 else 0.0

@@ -133,6 +133,12 @@ def estimate_sentence(analysis: Analysis) -> str:
     return f"The estimates span {low} … {high} m; {used}."
 
 
+def load_cycle_row(analysis: Analysis) -> tuple[str, ...]:
+    """Name, number, what went in and standing of the number of load cycles at resonance."""
+    found = analysis.results["wind"]["load_cycles"]
+    return "EN 1991-1-4, load cycles at resonance", number(found["number"], 3), found["detail"], found["standing"]
+
+
 def unsteady_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     """Quantity, value with absorbers and value without; one value if there are none."""
     found = analysis.results["unsteady_wind"]

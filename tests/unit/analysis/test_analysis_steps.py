@@ -249,9 +249,12 @@ def test_wind_step_lists_criteria_and_estimates_beside_the_computed_amplitude():
     assert found["computed"] == pytest.approx(0.0867, abs=5e-5)
     assert found["interval"][0] < found["computed"] < found["interval"][1]
     assert found["build_up_time"] == pytest.approx(136, abs=0.5)
+    assert "no section climate" in found["load_cycles"]["detail"]
     assert {row["standing"] for row in found["criteria"]} == {"verified", "secondary"}
     assert [row["expects_vibration"] for row in found["criteria"]] == [False, True, True, None, True, True]
-    assert json.loads(json.dumps(plain(found), allow_nan=False))["criteria"][1]["speeds"][1] is None
+    kept = json.loads(json.dumps(plain(found), allow_nan=False))
+    assert kept["criteria"][1]["speeds"][1] is None
+    assert (kept["load_cycles"]["number"], kept["estimates"][2]["ratio"]) == (None, None)
 
 
 def test_gusts_step_is_there_when_the_case_names_an_unsteady_wind():
@@ -273,12 +276,14 @@ def test_report_shows_wind_and_gusts():
     from frahm.report.report import render_report
 
     case = CASE.with_wind(turbulence={"intensity": 0.1, "length_scale": 60.0})
+    case = frahm.load_case(case.to_dict() | {"climate": {"duration": "1 year", "weibull": {"scale": 6, "shape": 2}}})
     work = Work(case)
     for step in (without_absorber, wind, gusts):
         work = work.with_section(step(work))
     kept = analysis_module._concluded(work, False)
     text = render_report(kept, {})
     for said in ("Brown &amp; Root 1985", "counter-example", "Griffin and Skop", "secondary", "Unsteady wind",
+                 "EN 1991-1-4, method 2", "load cycles at resonance", "2.36e+06",
                  "plot-unsteady-wind", "Synthetic turbulence"):  # fmt: skip
         assert said in text, said
     names = [name for name, _ in drawings(kept.results, kept.data)]

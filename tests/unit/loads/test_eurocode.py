@@ -1,9 +1,11 @@
 """Annex E of EN 1991-1-4 against the closed forms it tabulates, and against brute force on textbook shapes."""
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize_scalar
 
 import frahm
 from frahm.loads import (
@@ -11,8 +13,11 @@ from frahm.loads import (
     antinodes,
     correlation_length,
     eurocode_amplitude,
+    load_cycles,
+    lock_in_band,
     mode_factors,
     spectral_amplitude,
+    wind_climate,
 )
 
 CASE = frahm.load_case("jacket-pipe-elastic").without_absorbers()
@@ -230,3 +235,40 @@ def test_method_2_is_for_cantilevers_in_their_first_mode_only():
         row = amplitude_estimates(case).estimates[2]
         assert math.isnan(row.ratio)
         assert "cantilever in its first mode" in row.detail
+
+
+def test_load_cycles_are_the_time_in_a_band_of_speeds():
+    # for k = 2 the formula is T n eps_0 v p(v), p the density of the climate
+    found, critical = load_cycles(CASE), lock_in_band(CASE).resonance
+    climate = wind_climate(CASE)
+    seconds = CASE.climate.duration * 0.3 * critical * float(climate.density(critical))
+    assert found.number == pytest.approx(seconds * CASE.pipe.frequency / (2 * math.pi), rel=1e-12)
+    assert found.standing == "secondary"
+
+
+def climate_case(**climate):
+    return frahm.load_case(CASE.to_dict() | {"climate": {"duration": 1e8} | climate})
+
+
+def test_load_cycles_of_other_climates():
+    case = climate_case(weibull={"scale": 6.0, "shape": 3.0})
+    density = wind_climate(case).density
+    often = minimize_scalar(
+        lambda v: -float(density(v)), bounds=(0.1, 20.0), method="bounded", options={"xatol": 1e-9}
+    ).x
+    rayleigh = climate_case(weibull={"scale": math.sqrt(2) * often, "shape": 2.0})
+    assert load_cycles(case).number == pytest.approx(load_cycles(rayleigh).number, rel=1e-5)
+    rows = [{"speed": 3.0, "probability": 0.75}, {"speed": 9.0, "probability": 0.25}]
+    same = climate_case(weibull={"scale": math.sqrt(27.0), "shape": 2.0})
+    assert load_cycles(climate_case(table=rows)).number == pytest.approx(load_cycles(same).number, rel=1e-12)
+
+
+def test_load_cycles_that_cannot_be_said_and_those_that_are_few():
+    assert "no section climate" in load_cycles(frahm.load_case("jacket-pipe")).detail
+    assert math.isnan(load_cycles(climate_case(weibull={"scale": 6.0, "shape": 1.0})).number)
+    far = CASE.with_wind(speed=8.0, lift_coefficient=[[3e5, 0.5], [6e5, 0.4]])
+    assert math.isnan(load_cycles(far).number)
+    few = load_cycles(climate_case(weibull={"scale": 0.5, "shape": 2.0}))
+    assert few.number == 1e4
+    assert "the formula gives" in few.detail
+    assert set(dataclasses.asdict(few)) == {"number", "detail", "standing", "source"}
