@@ -198,7 +198,7 @@ def _about_fatigue(results: dict[str, Any]) -> list[str]:
     if results["has_absorber"]:
         text += f" with the worst motion at every wind, {bare:.2g} without absorbers"
     if not used <= 1:
-        return [f"{text}; that is more than 1."]
+        return [f"{text}."]
     held = factor * found["locked_in_with"]
     return [f"{text}; {held:.2g} if the shedding locked in over the whole lock-in band at the worst of it."]
 

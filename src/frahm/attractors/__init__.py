@@ -6,10 +6,11 @@ from frahm.attractors.finding import find_attractors
 from frahm.attractors.modulated import modulated_response
 from frahm.attractors.modulated_branches import modulated_branches
 from frahm.attractors.modulated_curve import ModulatedCurve
-from frahm.attractors.worst import WorstCase, driven_at, worst_case, worst_of, worst_over
+from frahm.attractors.worst import BESIDE, WorstCase, driven_at, worst_case, worst_of, worst_over
 from frahm.attractors.worst_motion import WorstMotion, joined
 
 __all__ = [
+    "BESIDE",
     "Attractor",
     "AttractorSet",
     "ModulatedCurve",

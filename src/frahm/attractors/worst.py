@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 # Frequencies are compared by their ratio: what is near scales with the pipe, and does not depend on the range.
 _SPREAD, _BAND = 9, 0.55  # frequencies spread over the range: at least so many, and over every such ln(hi/lo)
 _SPECIAL = 10  # special points of the response curve looked at on both sides, the largest first
-_BESIDE = 1.6e-4  # how far beside a special point, of the frequency
+BESIDE = 5e-4  # how far beside a special point, of the frequency: nearer to it motions hardly settle
 _CLOSE = 8e-5  # frequencies nearer than this are one
 _FINE = 3.3e-4  # how near its neighbours the worst is looked at in the end
 _ROUNDS = 12
@@ -220,8 +220,9 @@ def _range(case_or_system: Any, system: System, detuning: Any, frequency: Any, w
 def worst_over(
     system: System, within: OperatingRange, *, samples: int, min_basin: float, seed: int,
     region: Region | None = None, periods: int = PERIODS, workers: int | None = None, rms: bool = False,
+    beside: float = BESIDE,
 ) -> WorstCase:  # fmt: skip
-    """`worst_case` of a system over a range of operation."""
+    """`worst_case` of a system over a range; special points are looked at from `beside` of the frequency away."""
     wide = within.widened()
     curve, responses_at = _curve(system, wide)
     at = driven_at(system, wide)
@@ -241,7 +242,7 @@ def worst_over(
 
     doubts: list[str] = []
     try:
-        for W in _first_frequencies(curve, lo, hi):
+        for W in _first_frequencies(curve, lo, hi, beside):
             look(W)
         _refine(surveys, look, min_basin, sizes)
         look(_largest(surveys, _pipe, min_basin)[0], exponents=True)
@@ -290,7 +291,7 @@ def _region_of(system: System, curve: ResponseCurve, lo: float, hi: float) -> Re
     return region_for(system, hi, pipe, stroke)
 
 
-def _first_frequencies(curve: ResponseCurve, lo: float, hi: float) -> list[float]:
+def _first_frequencies(curve: ResponseCurve, lo: float, hi: float, beside: float) -> list[float]:
     """Frequencies to start with, ascending, none too near to another."""
     count = max(_SPREAD, math.ceil(_SPREAD * math.log(hi / lo) / _BAND))
     wanted = [lo, hi, *np.linspace(lo, hi, count)[1:-1]]
@@ -302,7 +303,7 @@ def _first_frequencies(curve: ResponseCurve, lo: float, hi: float) -> list[float
                 wanted.append(float(curve.frequency[here[np.argmax(peaks[here])]]))
     within = [point for point in curve.special_points if lo <= point.frequency <= hi]
     for point in sorted(within, key=lambda point: -point.pipe_peak)[:_SPECIAL]:
-        wanted += [point.frequency * (1 - _BESIDE), point.frequency * (1 + _BESIDE)]
+        wanted += [point.frequency * (1 - beside), point.frequency * (1 + beside)]
     chosen: list[float] = []
     for W in wanted:
         if lo <= W <= hi and all(abs(W - other) > _CLOSE * W for other in chosen):

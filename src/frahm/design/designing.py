@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm import __version__
-from frahm.assessment import accepted, fatigue_damage, utilisations, with_stress
-from frahm.attractors import WorstCase, WorstMotion, joined, worst_over
+from frahm.assessment import accepted, utilisations
+from frahm.attractors import WorstCase, WorstMotion
 from frahm.case import FAMILIES, Case, Design, load_case
 from frahm.design.absorber import DesignedAbsorber, absorber_of, parameters_text, with_design, without_first
+from frahm.design.completing import fatigue_row, worst_motion
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import Windows, exact_birth
 from frahm.design.finalists import Finalist, finalists
@@ -27,9 +28,8 @@ from frahm.design.search import Limits, TierOne
 from frahm.design.settings import DesignSettings, settings_for
 from frahm.design.study import DesignStudy, MarginPoint, Rival, headline
 from frahm.design.verdict import verdict
-from frahm.design.verification import Verification, climate_verification, glimpse, verification
+from frahm.design.verification import Verification, climate_verification, verification
 from frahm.errors import ParameterError
-from frahm.loads import other_modes
 from frahm.systems import System, build_system
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ _ATTEMPTS = 3  # searches of a family whose finalists all fail
 _ALIKE = 0.01  # relative difference of all parameters below which two finalists are one
 _JUMP = 1.1  # a design whose peak grows by more than this beside the force has met a detached curve
 _MARGIN_SAMPLES = 40
-_TABLE_SAMPLES, _TABLE_PERIODS = 8, 1000
+_TABLE_SAMPLES = 16
 _DEVICES = {"sink": "sink", "tuned": "tuned mass damper", "mixed": "mixed"}
 
 
@@ -344,36 +344,14 @@ class _Designing:
         self._step("other modes, stress and fatigue")
         for name, rival in list(self.found.rivals.items()):
             case = self._rival_case(rival)
-            worst = self._worst_motion(case, self.nominal.get(name if name in ("none", "case") else rival.design))
+            nominal = self.nominal.get(name if name in ("none", "case") else rival.design)
+            worst = worst_motion(case, self.problem, nominal)
             bounded = self.objective.name == "peak" and self.settings.quantile is None
             value = max(rival.value, worst.pipe_peak) if bounded else rival.value
-            whole = replace(rival, worst=worst, value=value, fatigue=self._fatigue(case))
+            whole = replace(rival, worst=worst, value=value, fatigue=fatigue_row(case))
             self.found.rivals[name] = whole
             if self.found.best is not None and name == self.found.best.name:
                 self.found.best = whole
-
-    def _worst_motion(self, case: Case, nominal: WorstCase | None) -> WorstMotion:
-        """The worst motion of the pipe as given with a device, by the very search of `frahm run`."""
-        within = self.problem.within
-        asked: dict[str, Any] = {"samples": self.settings.samples, "seed": self.settings.seed, "min_basin": 0.0}
-        first = nominal if nominal is not None else worst_over(build_system(case), within, **asked)
-        motions = [with_stress(case, first)]
-        for other, part in other_modes(case, self.problem.most_mass_ratio) if within.moves else ():
-            motions.append(with_stress(other, worst_over(build_system(other), part, **asked)))
-        return joined(motions)
-
-    def _fatigue(self, case: Case) -> dict[str, Any] | None:
-        """Fatigue over the climate with a device, of a case that asks for it."""
-        if case.fatigue is None or case.climate is None:
-            return None
-        found = fatigue_damage(case)
-        factor = found.design_fatigue_factor
-        return {
-            "damage": found.damage_with, "utilisation_with": factor * found.damage_with,
-            "life_years": found.life_years, "stress_range": float(np.max(found.range_with, initial=0.0)),
-            "design_fatigue_factor": factor, "duration_years": found.duration_years,
-            "unverified": list(found.unverified),
-        }  # fmt: skip
 
     def _acceptance(self, best: Rival) -> dict[str, Any]:
         rows = utilisations(self.case, {**best.worst.row(), "relative_peak": best.relative_peak}, best.fatigue)
@@ -405,7 +383,6 @@ class _Designing:
         """Every device at every frequency error, not retuned."""
         wide, objective, within = self.problem.wide, Objective(), self.problem.within
         windows = self.problem.windows if within.over_wind else Windows(wide, wide, True)
-        lock_in = not within.over_wind
         if not self.settings.errors:
             return
         for name, rival in sorted(self.found.rivals.items()):
@@ -415,10 +392,10 @@ class _Designing:
             def row(error: float, system: System = system, rival: Rival = rival) -> WorstMotion:
                 if error == 1:  # known already, and better
                     return rival.worst
-                return glimpse(
-                    system, windows, Disturbance(pipe_frequency=error, lock_in=lock_in), objective,
-                    samples=_TABLE_SAMPLES, seed=self.settings.seed, periods=_TABLE_PERIODS,
-                ).motion  # fmt: skip
+                one = Disturbance(pipe_frequency=error, lock_in=not within.over_wind)
+                return verification(
+                    system, windows, [one], objective, samples=_TABLE_SAMPLES, seed=self.settings.seed, quick=True
+                ).motion
 
             rows = in_threads(row, self.settings.errors)
             self.found.table[name] = tuple(row.pipe_peak for row in rows)

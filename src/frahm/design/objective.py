@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frahm import readable
 from frahm.arrays import Floats
 from frahm.design.host import Conditions
 
@@ -44,6 +45,10 @@ class Objective:
     def unit_text(self) -> str:
         """Unit for a sentence, with a blank behind it."""
         return "m " if self.unit == "m" else ""
+
+    def shown(self, value: float) -> str:
+        """A value for a sentence, in the unit engineers use."""
+        return readable.length(value) if self.unit == "m" else f"{value:.3g}"
 
     @property
     def over_climate(self) -> bool:

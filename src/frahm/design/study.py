@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frahm import readable
 from frahm.arrays import labelled
 from frahm.attractors import WorstMotion
 from frahm.design.absorber import UNITS, DesignedAbsorber
@@ -281,11 +280,10 @@ class DesignStudy:
 
 def headline(best: Rival, first: Rival, objective: Objective) -> str:
     """What was chosen, and whether another device does better."""
-    show = (lambda value: f"{value:.3g}") if objective.name == "damage" else readable.length
-    text = f"Best {best.name}: {objective.title} {show(best.value)}"
+    text = f"Best {best.name}: {objective.title} {objective.shown(best.value)}"
     if first.name in (best.name, "none") or not first.value < _ALIKE * best.value:
         return f"{text}; no device compared does better."
-    return f"{text}; the {first.name} does better, {show(first.value)}, and is not what was asked for."
+    return f"{text}; the {first.name} does better, {objective.shown(first.value)}, and is not what was asked for."
 
 
 def hardware_rows(sheet: Hardware | None) -> list[dict[str, Any]]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from frahm.assessment.climate_mean import climate_mean
 from frahm.assessment.fatigue import counted_band
-from frahm.attractors import WorstCase, WorstMotion, find_attractors, joined, worst_over
+from frahm.attractors import BESIDE, WorstCase, WorstMotion, joined, worst_over
 from frahm.case import Case
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import Windows
@@ -18,12 +18,10 @@ from frahm.design.objective import Objective
 from frahm.errors import Outcome
 from frahm.harmonic_balance import is_linear
 from frahm.loads import operating_range
-from frahm.response import ResponseCurve
-from frahm.systems import System, build_system, with_parameters
+from frahm.systems import System, build_system
 
 _REFINEMENTS = 4
-_MOST_POINTS = 6  # special points looked at on both sides in a glimpse, the largest first
-_BESIDE = 3e-3
+_FARTHER = 2e-3  # of the frequency
 _CLOSE = 0.006  # frequency errors nearer than this are one
 
 
@@ -81,8 +79,11 @@ def verification(
     min_basin: float = 0.0,
     periods: int = 3000,
     refine: bool = True,
+    quick: bool = False,
 ) -> Verification:
     """Worst case over all attractors under every disturbance; where these are a grid, with more beside the worst one.
+
+    With `quick` special points are looked at from farther away, where motions settle sooner.
 
     Raises
     ------
@@ -96,6 +97,7 @@ def verification(
         worst = worst_over(
             changed, windows.range(one, changed.reference_frequency), samples=samples, seed=seed,
             min_basin=min_basin, periods=periods, rms=objective.name == "rms",
+            beside=_FARTHER if quick else BESIDE,
         )  # fmt: skip
         if Outcome.INTERRUPTED.value in worst.unverified:
             raise KeyboardInterrupt
@@ -118,86 +120,6 @@ def is_grid(disturbances: Sequence[Disturbance]) -> bool:
         return False
     plain = all(replace(one, pipe_frequency=1.0) == Disturbance(lock_in=one.lock_in) for one in disturbances)
     return plain and list(disturbances) == sorted(disturbances)
-
-
-def glimpse(
-    system: System, windows: Windows, disturbance: Disturbance, objective: Objective, *, samples: int, seed: int,
-    periods: int,
-) -> Verification:  # fmt: skip
-    """Worst of few frequencies under one disturbance: all periodic responses, and attractors where the worst may be.
-
-    Attractors are looked for at the largest stable responses, beside the special points and in the middle of unstable
-    ranges. Cheaper than `verification` and less sure: for tables.
-
-    Raises
-    ------
-    KeyboardInterrupt
-        If the search was interrupted.
-    """
-    if is_linear(system):
-        return verification(system, windows, [disturbance], objective, samples=samples, seed=seed)
-    window, _ = windows.at(disturbance)
-    changed = disturbance.of(system)
-    within = windows.range(disturbance, changed.reference_frequency)
-    curve = windows.curve(system, disturbance)
-    inside = (curve.frequency >= window[0]) & (curve.frequency <= window[1])
-    best, doubts = None, list(curve.unverified)
-    places = _telling_frequencies(curve, inside)
-    rms = 0.0
-    for frequency in places:
-        driven = (
-            changed if windows.axis is None else with_parameters(changed, force=windows.axis.lift_factor(frequency))
-        )
-        found = find_attractors(driven, frequency=frequency, samples=samples, seed=seed, periods=periods)
-        if found.outcome is Outcome.INTERRUPTED:
-            raise KeyboardInterrupt
-        for attractor in found:
-            if attractor.kind == "unsettled":
-                doubts.append(f"Some motions did not settle at Omega = {frequency:.6g} rad/s.")
-            rms = max(rms, attractor.pipe_rms)
-            if best is None or attractor.pipe_peak > best.pipe_peak:
-                best = attractor
-    stable = inside & curve.stable
-    periodic = float(np.max(curve.pipe_peak[stable], initial=0.0))
-    stroke = float(np.max(curve.relative_peak[stable], initial=0.0))
-    peak, kind, frequency, state = periodic, "periodic", math.nan, np.empty(0)
-    if stable.any():
-        frequency = float(curve.frequency[int(np.argmax(np.where(stable, curve.pipe_peak, -1.0)))])
-    chance, interval = 0.0, (0.0, 1.0)
-    if best is not None and not best.pipe_peak < periodic:
-        peak, kind, frequency, state = best.pipe_peak, best.kind, best.frequency, best.representative_state
-        chance, interval, stroke = best.basin_fraction, best.basin_interval, max(stroke, best.relative_peak)
-    rms = max(rms, periodic / math.sqrt(2))
-    motion = WorstMotion(
-        pipe_peak=peak, frequency=frequency, detuning=frequency - changed.reference_frequency,
-        wind_speed=float(within.speed(frequency)) if math.isfinite(frequency) else math.nan, kind=kind,
-        basin_fraction=chance, basin_interval=interval, relative_peak=stroke, relative_frequency=frequency,
-        pipe_rms=rms, rms_frequency=frequency, state=state, range=within.text, tier="attractors at few frequencies",
-        samples=samples, searched=len(places), unverified=tuple(dict.fromkeys(doubts)),
-    )  # fmt: skip
-    return Verification(rms if objective.name == "rms" else peak, motion, disturbance)
-
-
-def _telling_frequencies(curve: ResponseCurve, inside: np.ndarray) -> list[float]:
-    """Frequencies at which the worst attractor of a response curve is likely, no two nearer than 0.2 %."""
-    wanted: list[float] = []
-    for branch in np.unique(curve.branch[inside]):
-        here = np.flatnonzero(inside & (curve.branch == branch))
-        for state in (True, False):
-            part = here[curve.stable[here] == state]
-            if part.size:
-                wanted.append(float(curve.frequency[part[np.argmax(curve.pipe_peak[part])]]))
-                if not state:
-                    ends = curve.frequency[part].min(), curve.frequency[part].max()
-                    wanted += [float(W) for W in np.linspace(*ends, 5)[1:-1]]
-    lo, hi = curve.frequency[inside].min(), curve.frequency[inside].max()
-    for point in sorted(curve.special_points, key=lambda point: -point.pipe_peak)[:_MOST_POINTS]:
-        wanted += [point.frequency * (1 - _BESIDE), point.frequency * (1 + _BESIDE)]
-    chosen: list[float] = []
-    for W in wanted:
-        if lo <= W <= hi and all(abs(W / other - 1) > 2e-3 for other in chosen):
-            chosen.append(W)
-    return sorted(chosen)
 
 
 def _beside_worst(found: dict[Disturbance, WorstCase], objective: Objective) -> list[Disturbance]:
