@@ -14,6 +14,7 @@ from frahm.case.analysis import Analysis
 from frahm.case.case import Case
 from frahm.case.climate import Climate, ClimateRow, Weibull
 from frahm.case.design import FAMILIES, OBJECTIVES, Design, Scatter
+from frahm.case.document import Document
 from frahm.case.fatigue import SN_CURVE_NAMES, Fatigue
 from frahm.case.fields import FieldFacts, FieldValue, field_table, field_values
 from frahm.case.limits import Limits
@@ -37,6 +38,7 @@ __all__ = [
     "ClimateRow",
     "CubicLaw",
     "Design",
+    "Document",
     "DryFriction",
     "EndStops",
     "Fatigue",

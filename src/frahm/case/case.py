@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any
 
 import numpy as np
@@ -14,12 +16,14 @@ from frahm.case.absorber import Absorber
 from frahm.case.analysis import Analysis
 from frahm.case.climate import Climate
 from frahm.case.design import Design
+from frahm.case.document import Document
 from frahm.case.fatigue import Fatigue
 from frahm.case.limits import Limits
 from frahm.case.pipe import AnyPipe
 from frahm.case.problems import parameter_error
 from frahm.case.quantities import Label, refusal
 from frahm.case.section import Section
+from frahm.case.typed import typed_texts, unchanged_texts
 from frahm.case.wind import Wind
 from frahm.errors import ParameterError, check_count, check_number, nearest
 
@@ -40,6 +44,9 @@ class Case(Section):
     )
     title: Annotated[str, Label()] = Field(
         default="", title="Title of the case", description="One line that says what the case is."
+    )
+    document: Document | None = Field(
+        default=None, title="Document", description="Project, number, revision and names for the title block."
     )
     pipe: AnyPipe = Field(
         title="Pipe", description="The pipe: one mode of vibration, an elastic tube, or a table of modes."
@@ -67,6 +74,8 @@ class Case(Section):
             super().__init__(**data)
         except ValidationError as error:
             raise parameter_error(error, type(self)) from error
+        # Beside the fields, as the cached properties are: what was typed is no part of what the case is.
+        self.__dict__["_typed"] = typed_texts(data, self)
 
     @field_validator("absorbers", "analysis", mode="before")
     @classmethod
@@ -130,6 +139,25 @@ class Case(Section):
                 raise refusal(error.allowed, path=path, value=where) from None
             if not np.max(np.abs(motion)) > _MOVES:
                 raise refusal("a section that moves in one of the modes", path=path, value=where)
+
+    @property
+    def typed(self) -> Mapping[str, str]:
+        """Text of every field that was typed with a unit of its own, by its path: ``{"pipe.diameter": "24 inch"}``.
+
+        Fields given as plain numbers, which are in SI units as they stand, and fields changed since are left out. It
+        is carried along by ``with_...`` and by pickling, and is no part of equality, `digest` or `to_dict`.
+        """
+        return MappingProxyType(self.__dict__.get("_typed", {}))
+
+    def with_typed(self, texts: Mapping[str, str]) -> Case:
+        """The same case that shows these texts, such as those of `typed` kept beside `to_dict`."""
+        new = self.model_copy()
+        new.__dict__["_typed"] = dict(texts)
+        return new
+
+    def with_document(self, /, **changes: Any) -> Case:
+        """Case with other entries of the title block, such as ``revision="B"``; what is not named stays."""
+        return self._with_section("document", changes)
 
     def with_pipe(self, /, **changes: Any) -> Case:
         """Case with other values of the pipe, such as ``frequency="0.8 Hz"``; what is not named stays."""
@@ -246,7 +274,9 @@ class Case(Section):
         return hashlib.sha256(canonical.encode()).hexdigest()
 
     def _with(self, changes: dict[str, Any]) -> Case:
-        return type(self)(**{name: getattr(self, name) for name in self.model_fields_set} | changes)
+        new = type(self)(**{name: getattr(self, name) for name in self.model_fields_set} | changes)
+        new.__dict__["_typed"] = {**unchanged_texts(self.typed, self, new), **new.typed}
+        return new
 
     def _with_section(self, section: str, changes: dict[str, Any]) -> Case:
         old = getattr(self, section)

@@ -61,17 +61,23 @@ def children(model: type[BaseModel], path: str) -> list[str]:
 
 
 class FieldValue(NamedTuple):
-    """What a case says in one field: where, what is known about the field, the value, and whether it was given."""
+    """What a case says in one field: where, what is known about it, the value, whether and as what it was given.
+
+    `typed` is the text of a value that came with a unit of its own, such as ``"24 inch"``; None for any other.
+    """
 
     path: str
     facts: FieldFacts
     value: Any
     given: bool
+    typed: str | None = None
 
 
 def field_values(case: BaseModel) -> typing.Iterator[FieldValue]:
     """Every field of a case with its value, section by section; sections left out are left out, long lists are one."""
-    return _values(case, "", "", field_table(type(case)))
+    texts: typing.Mapping[str, str] = getattr(case, "typed", {})
+    for field in _values(case, "", "", field_table(type(case))):
+        yield field._replace(typed=texts.get(field.path))
 
 
 def _values(

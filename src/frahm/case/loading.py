@@ -83,6 +83,12 @@ def _sources() -> str:
     return _SOURCES.format(", ".join(builtin_names()))
 
 
+def _sections() -> str:
+    """Names of the sections of a case, those that must be there first."""
+    names = [name for name in Case.model_fields if name not in ("name", "title")]
+    return ", ".join(sorted(names, key=lambda name: not Case.model_fields[name].is_required()))
+
+
 def case_from_text(text: str, name: str) -> Case:
     """Case of the text of a YAML or TOML file, which of the two its `name` says.
 
@@ -109,7 +115,7 @@ def _from_text(text: str, source: str | os.PathLike[str]) -> Case:
 
 
 def _from_data(data: Any, source: str | None = None, lines: Mapping[str, int] | None = None) -> Case:
-    check_mapping(data, "case", "pipe, wind, absorbers, climate, fatigue, design, analysis", source)
+    check_mapping(data, "case", _sections(), source)
     try:
         return Case(**data)
     except ParameterError as error:

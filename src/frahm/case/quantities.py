@@ -234,7 +234,8 @@ class Label(Door):
         text = value.strip() if isinstance(value, str) else ""
         broken = any(unicodedata.category(letter) in _NOT_IN_A_LINE for letter in text)
         if not isinstance(value, str) or broken or not self.shortest <= len(text) <= self.longest:
-            raise refusal(self.allowed)
+            number = isinstance(value, int | float) and not isinstance(value, bool)
+            raise refusal(self.allowed, hint=f'Put it in quotes: "{value}".' if number else None)
         return text
 
     def json_schema(self) -> dict[str, Any]:

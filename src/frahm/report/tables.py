@@ -61,7 +61,7 @@ def input_rows(case: Case, defaulted: list[str]) -> list[InputRow]:
     """Every field of the case in SI units, those left out in the file marked."""
     return [
         InputRow(path, facts.title, _symbol(facts.symbol), _value(value), _unit(facts.unit), path in defaulted)
-        for path, facts, value, _ in field_values(case)
+        for path, facts, value, *_ in field_values(case)
         if path not in ("name", "title", "absorbers")
     ]
 
