@@ -192,7 +192,8 @@ def misprints() -> str:
 
 _ROOMS = {
     "frahm.case": "The case", "frahm.systems": "Systems", "frahm.absorbers": "Force laws", "frahm.structure": "Beams",
-    "frahm.loads": "Wind", "frahm.response": "Responses", "frahm.harmonic_balance": "Periodic responses",
+    "frahm.loads": "Wind", "frahm.plausibility": "Plausibility",
+    "frahm.response": "Responses", "frahm.harmonic_balance": "Periodic responses",
     "frahm.time_integration": "Integration", "frahm.attractors": "Attractors", "frahm.assessment": "Fatigue",
     "frahm.design": "Design", "frahm.sweep": "Parameter studies", "frahm.errors": "Errors",
 }  # fmt: skip

@@ -11,6 +11,7 @@ __version__ = "0.1.0"
 _PUBLIC = {
     "Case": "frahm.case",
     "load_case": "frahm.case",
+    "plausibility": "frahm.plausibility",
     "ParameterError": "frahm.errors",
     "ConvergenceError": "frahm.errors",
     "Outcome": "frahm.errors",
