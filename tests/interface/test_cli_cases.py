@@ -22,10 +22,76 @@ def run(*arguments):
 def test_check_shows_values_units_and_what_follows():
     result = run("check", "jacket-pipe")
     assert result.exit_code == 0
-    for text in ("247 kg", "4.90088 rad/s = 0.78 Hz", "0.762 m", "0.7972 Hz", "0.0867 m", "kappa 367.38", "rho2 0.02"):
+    for text in (
+        "247 kg",
+        "0.78 Hz = 4.90088 rad/s",
+        "762 mm = 0.762 m",
+        "90742.86 N/m^3",
+        "0.7972 Hz",
+        "0.0867 m",
+        "kappa 367.38",
+        "rho2 0.02",
+    ):
         assert text in result.stdout
     assert "(default)" not in result.stdout
     assert result.stderr == ""
+
+
+def test_check_shows_values_as_typed_with_si_beside_them(tmp_path):
+    """A value typed in SI units stands there once, in the one spelling of its unit and of powers of ten."""
+    file = tmp_path / "a.yaml"
+    file.write_text(
+        "document: {revision: B}\n"
+        "pipe: {kind: tube, diameter: 24 inch, wall: 0.5  inch, length: 28.0 m, damping_ratio: 0.15 %,\n"
+        "  supports: [{at: 0, kind: clamped}, {at: 28, kind: pinned}]}\n"
+        "wind: {speed: 12 m/s, viscosity: 1.5e-05 m**2/s, lift_coefficient: en1991}\n"
+        "climate: {duration: 30 day, weibull: {scale: 20 knot, shape: 2}}\n"
+        "analysis: {detuning: [-0.05 Hz, 0.3]}\n"
+    )
+    shown = dict(line.split(maxsplit=1) for line in run("check", str(file)).stdout.splitlines()[1:] if line.strip())
+    expected = {
+        "pipe.diameter": "24 inch = 0.6096 m", "pipe.wall": "0.5 inch = 0.0127 m", "pipe.length": "28.0 m",
+        "pipe.damping_ratio": "0.15 % = 0.0015", "pipe.youngs_modulus": "2.06e11 Pa   (default)",
+        "wind.viscosity": "1.5e-05 m^2/s", "climate.duration": "30 day = 2.592e6 s",
+        "climate.weibull.scale": "20 knot = 10.2889 m/s", "pipe.supports[0].at": "0 m",
+        "analysis.detuning": "[-0.05 Hz, 0.3] = [-0.314159, 0.3] rad/s", "document.revision": "B",
+        "document.project": "none   (default)",
+    }  # fmt: skip
+    assert {path: shown[path] for path in expected} == expected
+
+
+def test_check_and_every_verb_say_what_is_implausible(tmp_path):
+    """On the error stream where there is work to do, in the text of check; the exit code stays."""
+    file = tmp_path / "a.yaml"
+    file.write_text(frahm.load_case("jacket-pipe").with_pipe(damping_ratio=0.15).to_yaml())
+    result = run("check", str(file))
+    assert result.exit_code == 0
+    note = "note: pipe.damping_ratio = 0.15: Welded members have 0.0015"
+    assert f"  {note}" in result.stdout
+    assert "The case is valid; see the notes above." in result.stdout
+    assert result.stderr == ""
+    assert "nothing about it is implausible" in run("check", "jacket-pipe").stdout
+    study = tmp_path / "study.yaml"
+    study.write_text("case: a.yaml\naxes: {xi2: [0.01]}\nquantities: {slow_flow: {detuning: 0.0}}\n")
+    done = run("sweep", str(study), "--store", str(tmp_path / "store"))
+    assert (done.exit_code, done.stderr.count(f"frahm: {note}")) == (0, 1)
+
+
+@pytest.mark.parametrize("verb", ["run", "design", "app"])
+def test_the_notes_come_before_the_work(tmp_path, monkeypatch, verb):
+    case = frahm.load_case("jacket-pipe").with_pipe(damping_ratio=0.15)
+    case.to_yaml(tmp_path / "a.yaml")
+
+    def stopped(*_, **__):
+        raise KeyboardInterrupt
+
+    for name in ("frahm.analysis.analyse", "frahm.design.design_absorber", "frahm.web.server.page_server"):
+        monkeypatch.setattr(name, stopped)
+    out = [] if verb == "app" else ["--out", str(tmp_path / "out")]
+    done = run(verb, str(tmp_path / "a.yaml"), *out)
+    assert done.exit_code == 130
+    assert "frahm: note: pipe.damping_ratio = 0.15: Welded members" in done.stderr
+    assert done.stdout == ""
 
 
 def test_check_marks_what_was_left_out(tmp_path):

@@ -9,6 +9,7 @@ import typer
 
 from frahm.cli.cases import CaseArgument
 from frahm.cli.guarded import ExitCode, held_interrupts
+from frahm.cli.notes import say_notes
 
 if TYPE_CHECKING:
     from frahm.design import DesignStudy
@@ -72,6 +73,7 @@ def design(
         "position": position, "wind": wind, "samples": samples, "seed": seed,
     }  # fmt: skip
     asked = {name: value for name, value in given.items() if value is not None}
+    say_notes(loaded)
     with shown_progress() as progress:
         progress("loading", 0, 1)
         with held_interrupts():

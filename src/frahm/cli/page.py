@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from frahm.cli.guarded import ExitCode
+from frahm.cli.notes import say_notes
 
 
 def page(
@@ -26,6 +27,7 @@ def page(
     if find_spec("dash") is None:  # it takes half a second to load: the page is announced before
         hint = 'Install it: pip install "frahm[app]".'
         raise ParameterError("app", "dash is not installed", "an installation with the page", hint=hint)
+    say_notes(loaded)
     from frahm.web.server import page_server
 
     with page_server(loaded, port) as server:

@@ -10,6 +10,7 @@ import typer
 from frahm.cli.cases import CaseArgument
 from frahm.cli.folder import holds_design
 from frahm.cli.guarded import ExitCode, held_interrupts
+from frahm.cli.notes import say_notes
 
 if TYPE_CHECKING:
     from frahm.analysis import Analysis
@@ -30,6 +31,7 @@ def run(
     loaded = load_case(case)
     folder = default_folder(loaded) if out is None else out
     claim_folder(folder, loaded, force=force)
+    say_notes(loaded)
     with shown_progress() as progress:
         progress("loading", 0, 1)
         with held_interrupts():

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from frahm.cli.guarded import ExitCode, held_interrupts
+from frahm.cli.notes import say_notes
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -41,6 +42,7 @@ def sweep(
             from frahm.sweep import SweepWarning, load_study, summary_of
             from frahm.sweep import sweep as compute
         loaded = load_study(study)
+        say_notes(loaded.case)
         try:
             with warnings.catch_warnings(record=True) as caught, _workers(scheduler, processes) as executor:
                 warnings.simplefilter("always", SweepWarning)
