@@ -112,6 +112,26 @@ def test_new_writes_a_case_that_checks(tmp_path):
     assert "# natural frequency" in file.read_text()
 
 
+@pytest.mark.parametrize("kind", ["mode", "tube", "table"])
+def test_new_writes_a_case_of_each_kind_of_pipe_that_checks_clean(tmp_path, kind):
+    file = tmp_path / "mine.yaml"
+    assert run("new", str(file), "--kind", kind).exit_code == 0
+    done = run("check", str(file))
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert "nothing about it is implausible" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [(["--kind", "tub"], "Did you mean 'tube'"), (["--kind", "tube", "--study"], "--kind: given 'tube'")],
+)
+def test_new_refuses_other_kinds(tmp_path, more, says):
+    done = run("new", str(tmp_path / "a.yaml"), *more)
+    assert done.exit_code == 2
+    assert says in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_new_never_replaces_a_file_unasked(tmp_path):
     file = tmp_path / "a.yaml"
     file.write_text("mine")

@@ -18,7 +18,14 @@ from frahm.case.document import Document
 from frahm.case.fatigue import SN_CURVE_NAMES, Fatigue
 from frahm.case.fields import FieldFacts, FieldValue, field_table, field_values
 from frahm.case.limits import Limits
-from frahm.case.loading import builtin_names, builtin_text, case_from_text, load_case, template_text
+from frahm.case.loading import (
+    TEMPLATE_KINDS,
+    builtin_names,
+    builtin_text,
+    case_from_text,
+    load_case,
+    template_text,
+)
 from frahm.case.mode_table import ModeTable
 from frahm.case.pipe import AnyPipe, Pipe
 from frahm.case.schema import case_schema
@@ -29,6 +36,7 @@ __all__ = [
     "FAMILIES",
     "OBJECTIVES",
     "SN_CURVE_NAMES",
+    "TEMPLATE_KINDS",
     "Absorber",
     "Analysis",
     "AnyPipe",

@@ -16,9 +16,9 @@ from frahm.case.csv_text import files_beside
 from frahm.case.documents import LARGEST, READERS, check_mapping, document_data, document_text, place
 from frahm.case.problems import parameter_error
 from frahm.case.yaml_text import read_yaml, yaml_text
-from frahm.errors import ParameterError
+from frahm.errors import ParameterError, check_choice
 
-_TEMPLATE = "jacket-pipe"
+TEMPLATE_KINDS = ("mode", "tube", "table")  # of the pipe, as a newcomer would call them
 _SOURCES = "the name of a built-in case ({}), or a .yaml, .yml or .toml file"
 
 
@@ -66,11 +66,25 @@ def builtin_text(name: str) -> str:
     return (resources.files("frahm.case") / "builtin" / f"{name}.yaml").read_text(encoding="utf-8")
 
 
-def template_text(name: str) -> str:
-    """Commented YAML text of a case to start from, under the name given."""
-    heading = yaml_text({"name": name, "title": "Say here in one line what the case is"}).rstrip("\n")
-    lines = builtin_text(_TEMPLATE).splitlines()
-    return "\n".join(heading if line.startswith("name:") else line for line in lines if line[:6] != "title:") + "\n"
+def template_text(name: str, kind: str = "mode") -> str:
+    """Commented YAML text of a case to start from, under the name given.
+
+    Parameters
+    ----------
+    name : str
+        Name of the case.
+    kind : {"mode", "tube", "table"}
+        What is known of the pipe: one mode of vibration, the tube and its supports, or a table of modes.
+
+    Raises
+    ------
+    ParameterError
+        If there is no such kind.
+    """
+    check_choice("kind", kind, TEMPLATE_KINDS)
+    text = (resources.files("frahm.case") / "templates" / f"{kind}.yaml").read_text(encoding="utf-8")
+    heading = yaml_text({"name": name}).rstrip("\n")
+    return "\n".join(heading if line.startswith("name:") else line for line in text.splitlines()) + "\n"
 
 
 @functools.cache

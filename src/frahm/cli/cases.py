@@ -20,17 +20,28 @@ def check(case: CaseArgument) -> None:
 
 def new(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="File to write, ending in .yaml or .yml.")],
+    kind: Annotated[
+        str | None,
+        typer.Option(
+            metavar="KIND", help="What is known of the pipe: mode (one mode, default), tube or table (of modes)."
+        ),
+    ] = None,
     study: Annotated[
         bool, typer.Option("--study", help="Write a small study for frahm sweep; it runs within a minute.")
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
 ) -> None:
     """Write a commented case file, or a study, to start from."""
-    from frahm.errors import ParameterError
+    from frahm.errors import ParameterError, check_choice
     from frahm.files import write_text
 
+    if study and kind is not None:
+        raise ParameterError("--kind", kind, "nothing beside --study, whose case is a built-in one or a file")
     if file.suffix.lower() not in (".yaml", ".yml"):
         raise ParameterError("FILE", str(file), "a file that ends in .yaml or .yml")
+    from frahm.case import TEMPLATE_KINDS, template_text
+
+    template = check_choice("--kind", "mode" if kind is None else kind, TEMPLATE_KINDS)
     if file.exists() and (file.is_dir() or not force):
         hint = "It is a directory." if file.is_dir() else "It exists; --force replaces it."
         raise ParameterError("FILE", str(file), "a file that does not exist yet", hint=hint)
@@ -40,9 +51,7 @@ def new(
         write_text(file, study_template(file.stem))
         typer.echo(f"{file} written. Edit it, then: frahm sweep {file} --store {file.with_suffix('.zarr')}")
         return
-    from frahm.case import template_text
-
-    write_text(file, template_text(file.stem))
+    write_text(file, template_text(file.stem, template))
     typer.echo(f"{file} written. Edit it, then: frahm check {file}")
 
 

@@ -1,4 +1,5 @@
 import math
+import re
 from collections import OrderedDict
 from pathlib import Path
 
@@ -7,7 +8,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import frahm
-from frahm.case import builtin_names, template_text
+from frahm.case import TEMPLATE_KINDS, builtin_names, template_text
 
 YAML = """
 name: 1e3 is text here
@@ -64,10 +65,54 @@ def test_a_source_beside_a_built_in_name_does_not_hide_it(tmp_path, monkeypatch)
 @pytest.mark.parametrize("name", ["my-pipe", "yes", "1e3", "null", "a: b", "#1", "- x", "ø'\""])
 def test_the_template_is_the_built_in_case_under_another_name(tmp_path, name):
     (tmp_path / "a.yaml").write_text(template_text(name), encoding="utf-8")
-    case = frahm.load_case(tmp_path / "a.yaml")
+    case, built_in = frahm.load_case(tmp_path / "a.yaml"), frahm.load_case("jacket-pipe")
     assert case.name == name
-    assert case.with_name("x", "") == frahm.load_case("jacket-pipe").with_name("x", "")
-    assert template_text(name).count("#") > 15
+    assert (case.pipe, case.wind, case.absorbers) == (built_in.pipe, built_in.wind, built_in.absorbers)
+
+
+@pytest.mark.parametrize("kind", TEMPLATE_KINDS)
+def test_a_template_explains_every_field_and_is_plausible(tmp_path, kind):
+    """No window of the paper; what is commented out can be put in as it stands."""
+    text = template_text("mine", kind)
+    (tmp_path / "a.yaml").write_text(text, encoding="utf-8")
+    case = frahm.load_case(tmp_path / "a.yaml")
+    assert case.pipe.kind == {"table": "modes"}.get(kind, kind)
+    assert frahm.plausibility(case) == ()
+    assert "detuning" not in case.analysis.model_fields_set
+    sections = "document|pipe|wind|absorbers|climate|fatigue|design|analysis"
+    for line in text.splitlines():
+        field = re.match(rf"( *)(# *)?(- )?(?!{sections}|name:|title:|sections:|modes:)([a-z_]+):", line)
+        assert field is None or "  # " in line[field.end() :], line
+        assert len(line) <= 120, line
+    everything = re.sub(r"^( *)# (?=(?:  )*(?:- )?(?:[a-z_]+:|\{))", r"\1", text, flags=re.MULTILINE)
+    (tmp_path / "b.yaml").write_text(everything, encoding="utf-8")
+    full = frahm.load_case(tmp_path / "b.yaml")
+    assert full.document.date == "2026-03-31"
+    assert full.design.stroke == 0.02
+    assert full.absorbers[0].stops.gap == 0.06
+    assert full.analysis.detuning == (-0.4, 0.4)
+    assert kind != "tube" or (full.pipe.point_masses[0].mass, len(full.pipe.supports)) == (50.0, 3)
+
+
+def test_tube_and_table_of_the_templates_are_the_same_brace(tmp_path):
+    """The table as another program would round the modes of the tube."""
+    cases = []
+    for kind in ("tube", "table"):
+        (tmp_path / f"{kind}.yaml").write_text(template_text("brace", kind), encoding="utf-8")
+        cases.append(frahm.load_case(tmp_path / f"{kind}.yaml"))
+    tube, table = (case.pipe.modal for case in cases)
+    for name in ("frequencies", "masses", "lift_lengths"):
+        assert getattr(table, name) == pytest.approx(getattr(tube, name), rel=1e-3)
+    for section in cases[1].pipe.sections:
+        assert table.displacement(section) == pytest.approx(tube.displacement(section), abs=1e-3)
+        assert table.stress(section) == pytest.approx(tube.stress(section), abs=2e-4 * 7e9)
+    damped = [frahm.plausibility(case.with_absorber(xi2=0)) for case in cases]
+    assert [[one.name for one in found] for found in damped] == [["absorbers[0].law.damping"]] * 2
+
+
+def test_there_is_no_template_of_another_kind():
+    with pytest.raises(frahm.ParameterError, match=r"kind: given 'tub'; allowed: one of mode, tube, table"):
+        template_text("mine", "tub")
 
 
 positive = st.floats(1e-6, 1e12)
