@@ -7,12 +7,13 @@ from dataclasses import dataclass
 
 from frahm.case import Case, PolynomialLaw
 from frahm.design.absorber import DesignedAbsorber, left_out, with_design
-from frahm.design.springs import ALLOWED_SHEAR, MOST_SPRING_STROKE, SPRING_INDEX, coil_springs
+from frahm.design.springs import ALLOWED_SHEAR, MOST_SPRING_STROKE, CoilSprings, coil_springs, why_not_wound
 from frahm.errors import check_number
 
 GRAVITY = 9.80665
 STEEL_MODULUS = 2.06e11  # [Pa]
 MOST_WIRE_STROKE = 0.07  # of half the span
+WIRE_STRENGTH, THINNEST_WIRE = 1.0e9, 1e-4  # half of what drawn spring wire breaks at [Pa], and its diameter [m]
 ENDURANCE_SHEAR = 2.41e8  # amplitude of the shear stress that unpeened spring steel outlives [Pa]
 _YEAR = 365.25 * 86_400.0
 
@@ -100,7 +101,8 @@ def hardware(
         Two transverse springs of length L on either side, L so that the stroke is a quarter of it, with the pretension
         T0 = k1 L/2 that the linear part needs: k3 = (k_s - T0/L)/L^2. Or two wires of length L (k3 = E A/L^3) with
         the same pretension. Coil springs by tau = 8 F C K/(pi d^2) with Wahl's factor K and k = G d/(8 C^3 n)
-        (textbook formulas, secondary).
+        (textbook formulas, secondary). Coil springs that nobody can wind, and wires that would break, are left out:
+        a warning says why and what to take instead.
     """
     host = case.pipe.mass
     mass, k1, k3, c = (host * value for value in (design.rho2, design.linear, design.kappa, design.xi2))
@@ -115,35 +117,49 @@ def hardware(
     items.append(HardwareItem("friction as strong as the damper", friction, "N", "pi/4 c Omega z: keep far below it"))
     if k1:
         items.append(HardwareItem("linear stiffness", k1, "N/m", "linear times the mass of the pipe"))
+    unfit: tuple[str, ...] = ()
     if k3:
         items.append(HardwareItem("cubic stiffness", k3, "N/m^3", "kappa times the mass of the pipe"))
-        items += _transverse_springs(k1, k3, stroke, frequency, room, stress)
-        items += _wires(k1, k3, stroke)
+        springs = coil_springs(k1, k3, stroke, room, stress)
+        not_wound, breaks = why_not_wound(springs), _why_wires_break(k1, k3, stroke)
+        items += _transverse_springs(k1, springs, stroke, room)
+        items += [] if not_wound else _coils(springs, frequency, stress)
+        items += [] if breaks else _wires(k1, k3, stroke)
+        unfit = _unfit(not_wound, breaks, stroke)
     sag = _sag(mass * GRAVITY, k1, k3)
     items.append(HardwareItem("sag if gravity acts along the motion", sag, "m", "k1 s + k3 s^3 = m g"))
-    return Hardware(tuple(items), (*left_out(case), *_warnings(design, stroke, sag)))
+    return Hardware(tuple(items), (*left_out(case), *unfit, *_warnings(design, stroke, sag)))
 
 
-def _transverse_springs(
-    k1: float, k3: float, stroke: float, frequency: float, room: float | None, stress: float | None
-) -> list[HardwareItem]:
-    springs = [float(value) for value in coil_springs(k1, k3, stroke, room, stress)]
-    length, free, stiffness, extension, pretension, force, wire, coils, solid = springs
-    top = ALLOWED_SHEAR if stress is None else stress
-    swing = 0.5 * top * (1 - pretension / force)
+def _transverse_springs(k1: float, springs: CoilSprings, stroke: float, room: float | None) -> list[HardwareItem]:
+    """What the springs must do, however they are made."""
+    length, pretension = float(springs.length), float(springs.pretension)
     origin = "stroke over 0.25: force within 4.5 % of cubic" if room is None else "the room given"
     items = [
         HardwareItem("spring length L in the middle, each side", length, "m", origin),
-        HardwareItem("spring free length, each side", free, "m", "L - T0/k_s"),
-        HardwareItem("spring stiffness k_s, each side", stiffness, "N/m", "k3 L^2 + k1/2"),
-        HardwareItem("spring extension by the stroke", extension, "m", "sqrt(L^2 + z^2) - L"),
-        HardwareItem("spring force at the stroke", force, "N", "k_s times extension, with pretension"),
+        HardwareItem("spring free length, each side", float(springs.free), "m", "L - T0/k_s"),
+        HardwareItem("spring stiffness k_s, each side", float(springs.stiffness), "N/m", "k3 L^2 + k1/2"),
+        HardwareItem("spring extension by the stroke", float(springs.extension), "m", "sqrt(L^2 + z^2) - L"),
+        HardwareItem("spring force at the stroke", float(springs.force), "N", "k_s times extension, with pretension"),
         HardwareItem("exact over cubic force at the stroke", transverse_pair_ratio(stroke / length), "-", "exact law"),
-        HardwareItem(
-            "coil spring wire diameter", wire, "m", f"shear stress {top / 1e6:g} MPa, C = {SPRING_INDEX:g} (secondary)"
-        ),
+    ]
+    if k1:
+        items.append(HardwareItem("pretension for the linear part", pretension, "N", "T0 = k1 L/2, at length L"))
+    return items
+
+
+def _coils(springs: CoilSprings, frequency: float, stress: float | None) -> list[HardwareItem]:
+    """The springs as coil springs."""
+    top = ALLOWED_SHEAR if stress is None else stress
+    index, wire, coils = float(springs.index), float(springs.wire), float(springs.coils)
+    swing = 0.5 * top * (1 - float(springs.pretension / springs.force))
+    return [
+        HardwareItem("coil spring index", index, "-", "mean over wire diameter C: 8, less for three active coils"),
+        HardwareItem("coil spring wire diameter", wire, "m", f"shear stress {top / 1e6:g} MPa, C K (secondary)"),
         HardwareItem("coil spring active coils", coils, "-", "G d/(8 C^3 k_s) (secondary)"),
-        HardwareItem("coil spring solid over free length", solid / free, "-", "(n + 2) d, below 1 it fits"),
+        HardwareItem(
+            "coil spring solid over free length", float(springs.solid / springs.free), "-", "(n + 2) d, below 1 it fits"
+        ),
         HardwareItem("spring extensions a year", 2 * frequency / (2 * math.pi) * _YEAR, "-", "two a cycle, all year"),
         HardwareItem("shear stress amplitude in the springs", swing, "Pa", "half of what the stroke adds"),
         HardwareItem(
@@ -151,9 +167,33 @@ def _transverse_springs(
             "241 MPa, unpeened spring steel by Zimmerli (secondary): below 1 it outlives any number of cycles",
         ),
     ]  # fmt: skip
-    if k1:
-        items.append(HardwareItem("pretension for the linear part", pretension, "N", "T0 = k1 L/2, at length L"))
-    return items
+
+
+def _why_wires_break(k1: float, k3: float, stroke: float) -> str | None:
+    """Why taut wires cannot take the place of the springs, as a sentence; None if they can."""
+    length = stroke / MOST_WIRE_STROKE
+    area = k3 * length**3 / STEEL_MODULUS
+    stress = 0.5 * k1 * length / area + 0.5 * STEEL_MODULUS * MOST_WIRE_STROKE**2
+    if (diameter := math.sqrt(4 * area / math.pi)) < THINNEST_WIRE:
+        return f"it would be {1e3 * diameter:.2g} mm thick, and wire is {1e3 * THINNEST_WIRE:g} mm at least"
+    if stress > WIRE_STRENGTH:
+        return f"the linear part tightens it to {stress / 1e6:.3g} MPa, more than {WIRE_STRENGTH / 1e6:g} MPa"
+    return None
+
+
+def _unfit(not_wound: str | None, breaks: str | None, stroke: float) -> tuple[str, ...]:
+    """What cannot be made, why, and what to take instead."""
+    if not_wound and breaks:
+        return (
+            f"No coil spring can be wound for this: {not_wound}. Nor can a taut wire do it: {breaks}. It needs another"
+            " device, such as a leaf spring bent around a shaped block or a cam, or another stroke or mass.",
+        )
+    if not_wound:
+        return (
+            f"No coil spring can be wound for this: {not_wound}. Take the two taut wires of the sheet instead,"
+            f" k3 = E A/L^3 with L = {stroke / MOST_WIRE_STROKE:.3g} m each side, or another device.",
+        )
+    return (f"No taut wire can take the place of the coil springs: {breaks}.",) if breaks else ()
 
 
 def _wires(k1: float, k3: float, stroke: float) -> list[HardwareItem]:

@@ -40,11 +40,72 @@ def test_sag_balances_gravity_and_the_papers_sink_sags_by_more_than_its_stroke()
 def test_coil_spring_has_its_stiffness_and_stress():
     sheet = hardware(CASE, SINK, 0.0133, 4.87)
     wire, coils = sheet.value("coil spring wire diameter"), sheet.value("coil spring active coils")
+    assert sheet.value("coil spring index") == 8
     mean = 8 * wire
     assert 7.9e10 * wire**4 / (8 * mean**3 * coils) == pytest.approx(sheet.value("spring stiffness k_s, each side"))
     wahl = 31 / 28 + 0.615 / 8
     stress = 8 * sheet.value("spring force at the stroke") * mean * wahl / (np.pi * wire**3)
     assert stress == pytest.approx(4e8)
+
+
+@pytest.mark.parametrize("kappa", [4000.0, 8000.0, 14000.0])
+def test_a_stiffer_coil_spring_has_a_smaller_index_that_leaves_three_coils(kappa):
+    stroke = 0.0133
+    sheet = hardware(CASE, DesignedAbsorber(0.02, 0.0, kappa, 0.05715), stroke, 4.87)
+    index, wire = sheet.value("coil spring index"), sheet.value("coil spring wire diameter")
+    coils, force = sheet.value("coil spring active coils"), sheet.value("spring force at the stroke")
+    assert 4 < index < 8 or (index, kappa) == (8, 4000.0)
+    assert coils == pytest.approx(3) or (kappa == 4000.0 and coils > 3)
+    assert 7.9e10 * wire / (8 * index**3 * coils) == pytest.approx(sheet.value("spring stiffness k_s, each side"))
+    wahl = (4 * index - 1) / (4 * index - 4) + 0.615 / index
+    assert 8 * force * index * wahl / (np.pi * wire**2) == pytest.approx(4e8)
+
+
+def names(sheet):
+    return {item.name for item in sheet.items}
+
+
+def test_a_coil_spring_nobody_can_wind_is_said_so_and_taut_wires_are_offered_instead():
+    """A brace's sink: 0.46 active coils at the usual index of 8, 2.8 at 4."""
+    brace = DesignedAbsorber(0.02, 0.0, 2.7e7 / 247, 0.05715)
+    sheet = hardware(CASE, brace, 0.03, 13.2)
+    (said,) = [warning for warning in sheet.warnings if "coil spring" in warning]
+    assert "2.8 active coils even at a spring index of 4, and needs 3" in said
+    assert "two taut wires of the sheet instead, k3 = E A/L^3 with L = 0.429 m" in said
+    assert not [name for name in names(sheet) if name.startswith("coil spring") or "fatigue" in name]
+    assert sheet.value("spring stiffness k_s, each side") == pytest.approx(2.7e7 * 0.12**2)
+    length, diameter = sheet.value("wire length L, each side"), sheet.value("wire diameter")
+    assert 2.06e11 * np.pi / 4 * diameter**2 / length**3 == pytest.approx(2.7e7)
+    assert not [
+        warning for warning in hardware(CASE, SINK, 0.0133, 4.87).warnings if "coil" in warning or "wire" in warning
+    ]
+
+
+@pytest.mark.parametrize(
+    ("design", "stroke", "room", "says"),
+    [
+        (DesignedAbsorber(0.02, 0.46, 2.0, 0.03), 0.02, None, "times as long as free"),
+        (DesignedAbsorber(0.02, 0.0, 0.001, 0.03), 0.01, None, "mm thick, and spring wire is 0.1 mm to 100 mm"),
+        (DesignedAbsorber(0.02, 0.0, 46000.0, 0.03), 0.05, 0.05, "it would be wider"),
+    ],
+)
+def test_other_springs_nobody_can_wind(design, stroke, room, says):
+    sheet = hardware(CASE, design, stroke, 4.9, room)
+    assert any(says in warning for warning in sheet.warnings), sheet.warnings
+    assert "coil spring wire diameter" not in names(sheet)
+
+
+def test_a_wire_that_would_break_or_vanish_is_left_out_and_said():
+    """The linear part asks for 21 N of tension in a wire of 0.05 mm: 11 GPa."""
+    sheet = hardware(CASE, DesignedAbsorber(0.02, 0.4, 20.0, 0.03), 0.03, 4.9)
+    assert any("No taut wire can take the place" in warning and "0.049 mm" in warning for warning in sheet.warnings)
+    assert "wire diameter" not in names(sheet)
+    assert "coil spring wire diameter" in names(sheet)
+    tight = hardware(CASE, DesignedAbsorber(0.02, 0.4, 200.0, 0.03), 0.03, 4.9)
+    assert any("tightens it to" in warning for warning in tight.warnings)
+    neither = hardware(CASE, DesignedAbsorber(0.02, 0.46, 2.0, 0.03), 0.02, 4.9)
+    assert any("Nor can a taut wire" in warning and "another device" in warning for warning in neither.warnings)
+    assert not names(neither) & {"wire diameter", "coil spring wire diameter"}
 
 
 def test_wires_have_the_cubic_stiffness():
