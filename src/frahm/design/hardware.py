@@ -151,7 +151,7 @@ def _transverse_springs(k1: float, springs: CoilSprings, stroke: float, room: fl
 def _coils(springs: CoilSprings, frequency: float, stress: float | None) -> list[HardwareItem]:
     """The springs as coil springs."""
     top = ALLOWED_SHEAR if stress is None else stress
-    index, wire, coils = float(springs.index), float(springs.wire), float(springs.coils)
+    index, wire, coils = float(springs.spring_index), float(springs.wire), float(springs.coils)
     swing = 0.5 * top * (1 - float(springs.pretension / springs.force))
     return [
         HardwareItem("coil spring index", index, "-", "mean over wire diameter C: 8, less for three active coils"),

@@ -29,7 +29,7 @@ class CoilSprings(NamedTuple):
     length, free, stiffness, extension, pretension, force : ndarray
         L in the middle and without tension [m], k_s [N/m], extension by the stroke [m], tension in the middle and at
         the stroke [N].
-    index, wire, coils, solid : ndarray
+    spring_index, wire, coils, solid : ndarray
         C, mean diameter over that of the wire [-], diameter of the wire [m], active coils [-], and length with all
         coils touching [m].
     """
@@ -40,7 +40,7 @@ class CoilSprings(NamedTuple):
     extension: Floats
     pretension: Floats
     force: Floats
-    index: Floats
+    spring_index: Floats
     wire: Floats
     coils: Floats
     solid: Floats
@@ -102,7 +102,7 @@ def why_not_wound(springs: CoilSprings) -> str | None:
     springs : CoilSprings
         Of one design: every array of shape ().
     """
-    coils, index, wire, free = (float(v) for v in (springs.coils, springs.index, springs.wire, springs.free))
+    coils, index, wire, free = (float(v) for v in (springs.coils, springs.spring_index, springs.wire, springs.free))
     if coils < LEAST_COILS * (1 - _ROUNDING):
         return f"it would have {coils:.2g} active coils even at a spring index of {index:g}, and needs {LEAST_COILS:g}"
     if not _WIRES[0] <= wire <= _WIRES[1]:

@@ -50,7 +50,7 @@ class Inputs:
         """The field at a path with a reason; `units` are what may have been meant by a plain number."""
         field = self.values[path]
         unit = field.facts.unit
-        number = f"{field.value:.6g}" if isinstance(field.value, float) else str(field.value)
+        number = _text(field.value)
         given = field.typed or (number + (f" {unit}" if unit else ""))
         meant = [f"{number} {other}" for other in units] if self.bare(path) else []
         question = f" Was {' or '.join(meant)} meant?" if meant else ""
@@ -60,3 +60,9 @@ class Inputs:
         """Whether a field was given, and as a plain number."""
         field = self.values[path]
         return bool(field.given and field.typed is None and isinstance(field.value, float))
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, tuple):
+        return "[" + ", ".join(map(_text, value)) + "]"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -12,6 +12,7 @@ from frahm.loads import (
     forced_amplitude,
     lock_in_band,
     reynolds_number,
+    site_winds,
     vortex_shedding,
     wind_excitation,
 )
@@ -31,6 +32,7 @@ def judged_wind(inputs: Inputs) -> Iterator[Implausible]:
     """What is implausible about the wind and what it does."""
     yield from _speed(inputs)
     yield from _mode_reached(inputs)
+    yield from _site(inputs)
     yield from _coefficients(inputs)
     yield from _tables(inputs)
     yield from _amplitude(inputs)
@@ -72,6 +74,38 @@ def _mode_reached(inputs: Inputs) -> Iterator[Implausible]:
     if not isinstance(case.pipe, Pipe) and ratios[-1] > LOCK_IN_RATIOS[1]:
         reason += f" It is above all {natural.size} modes: higher ones may be missing."
     yield inputs.implausible("wind.speed", reason)
+
+
+def _site(inputs: Inputs) -> Iterator[Implausible]:
+    """The winds of the site, and those asked about, should reach a mode, and no mode that is not modelled."""
+    case, law = inputs.case, wind_excitation(inputs.case)
+    natural = np.sort(case.pipe.modal.frequencies)
+    first, last = law.speeds_of(LOCK_IN_RATIOS[0] * natural[0]), law.speeds_of(LOCK_IN_RATIOS[1] * natural[-1])
+    windows = {"wind.range": case.wind.range, "analysis.wind": case.analysis.wind, "design.wind": None}
+    windows["design.wind"] = None if case.design is None else case.design.wind
+    for path, window in windows.items():
+        if window is None:
+            continue
+        shed = law.frequency(np.clip(window, *law.speed_range))
+        reaches = f"these winds shed at {shed[0] / (2 * math.pi):.3g} to {shed[1] / (2 * math.pi):.3g} Hz"
+        if not np.any((natural * LOCK_IN_RATIOS[1] >= shed[0]) & (natural * LOCK_IN_RATIOS[0] <= shed[1])):
+            named = ", ".join(f"{omega / (2 * math.pi):.3g}" for omega in natural)
+            yield inputs.implausible(path, f"No mode is excited: {reaches}, and the modes are at {named} Hz ({_BAND}).")
+        elif not isinstance(case.pipe, Pipe) and last.size and window[1] > float(last[-1]):
+            reason = f"Higher modes may be missing: {reaches}, above all {natural.size} modes ({_BAND})."
+            yield inputs.implausible(path, reason)
+    if case.wind.range is not None and not case.wind.range[0] <= case.wind.speed <= case.wind.range[1]:
+        reason = f"The site has winds of {case.wind.range[0]:g} to {case.wind.range[1]:g} m/s (wind.range)."
+        yield inputs.implausible("wind.speed", reason)
+    site = site_winds(case)[0]
+    if case.wind.range is None and case.climate is not None and first.size and site[1] < float(first[0]):
+        field = "climate.table" if case.climate.weibull is None else "climate.weibull.scale"
+        path = next(path for path in inputs.values if path.startswith(field))
+        reason = (
+            f"Its strongest wind is {site[1]:.3g} m/s, and the lowest mode is excited from {float(first[0]):.3g} m/s on"
+            f" ({_BAND}): there is nothing to count."
+        )
+        yield inputs.implausible(path, reason)
 
 
 def _locks_in(ratio: np.ndarray | float) -> np.ndarray:

@@ -79,7 +79,7 @@ def test_a_template_explains_every_field_and_is_plausible(tmp_path, kind):
     assert case.pipe.kind == {"table": "modes"}.get(kind, kind)
     assert frahm.plausibility(case) == ()
     assert "detuning" not in case.analysis.model_fields_set
-    sections = "document|pipe|wind|absorbers|climate|fatigue|design|analysis"
+    sections = "document|pipe|wind|absorbers|climate|fatigue|limits|design|analysis"
     for line in text.splitlines():
         field = re.match(rf"( *)(# *)?(- )?(?!{sections}|name:|title:|sections:|modes:)([a-z_]+):", line)
         assert field is None or "  # " in line[field.end() :], line
@@ -90,7 +90,10 @@ def test_a_template_explains_every_field_and_is_plausible(tmp_path, kind):
     assert full.document.date == "2026-03-31"
     assert full.design.stroke == 0.02
     assert full.absorbers[0].stops.gap == 0.06
-    assert full.analysis.detuning == (-0.4, 0.4)
+    assert full.analysis.wind[0] in (2.2, 5.0)
+    assert full.analysis.detuning is None
+    assert (full.wind.range, full.limits.stress_range) == ((0.0, 25.0), 60e6)
+    assert {one.name for one in frahm.plausibility(full)} <= {"wind.range"}
     assert kind != "tube" or (full.pipe.point_masses[0].mass, len(full.pipe.supports)) == (50.0, 3)
 
 

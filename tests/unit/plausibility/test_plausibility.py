@@ -78,6 +78,12 @@ FIRES = [
     (MODE.with_wind(**(WATER | {"speed": 6.0})), "wind.speed", r"Currents stay below 5 m/s"),
     (MODE.with_wind(speed=1.5), "wind.speed", r"0\.568 times.*DNV-RP-C205.*Resonance is at 2\.64 m/s"),
     (TUBE.with_wind(speed=60.0), "wind.speed", r"above all 3 modes"),
+    (MODE.with_wind(range=(3.0, 20.0)), "wind.speed", r"The site has winds of 3 to 20 m/s"),
+    (MODE.with_wind(range=(0.1, 1.5)), "wind.range", r"\[0\.1, 1\.5\] m/s: No mode .* 0\.0295 to 0\.443 Hz.* 0\.78 Hz"),
+    (MODE.with_analysis(detuning=None, wind=(5.0, 9.0)), "analysis.wind", r"No mode is excited: .* 1\.48 to 2\.66 Hz"),
+    (MODE.with_design(wind=(5.0, 9.0)), "design.wind", r"No mode is excited"),
+    (TUBE.with_wind(range=(0.1, 70.0)), "wind.range", r"Higher modes may be missing: .*20\.7 Hz, above all 3 modes"),
+    (TUBE.with_climate(weibull={"scale": 0.5, "shape": 2}), "climate.weibull.scale", r"excited from 2\.2 m/s on"),
     (MODE.with_wind(strouhal=0.02), "wind.strouhal", r"circular cylinders have 0\.18 to 0\.2"),
     (MODE.with_wind(lift_coefficient=4.5), "wind.lift_coefficient", r"EN 1991-1-4 has 0\.7 at most"),
     (MODE.with_wind(lift_coefficient=0), "wind.lift_coefficient", r"0\.2 at least"),
@@ -104,6 +110,14 @@ FIRES = [
 def test_a_mistake_is_asked_about(case, name, says):
     sentences = [str(one) for one in frahm.plausibility(case) if one.name == name]
     assert any(re.search(says, sentence) for sentence in sentences), sentences
+
+
+def test_a_site_with_all_winds_is_plausible():
+    assert frahm.plausibility(MODE.with_wind(range=(0, 40))) == ()
+    assert frahm.plausibility(TUBE.with_wind(range=(0, 40))) == ()
+    assert (
+        frahm.plausibility(TUBE.with_wind(range=(0, 40), speed=3.3, lift_coefficient="en1991", strouhal="en1991")) == ()
+    )
 
 
 def test_the_stress_per_displacement_is_held_against_that_of_a_tube():
