@@ -46,7 +46,7 @@ def _damping(inputs: Inputs) -> Iterator[Implausible]:
             yield inputs.implausible(path, reason, ["%"] if low <= max(ratios) / 100 <= high else [])
         elif min(ratios) < low:
             reason = (
-                "Welded members have 0.0015 (NPD, measured on flare booms), and no structure is known to have less than"
+                "Welded members have 0.0015 (NPD, measured on flare booms), and a rule of thumb knows none with less than"
                 f" {low:g}: in resonance a pipe moves as 1/damping."
             )
             yield inputs.implausible(path, reason)

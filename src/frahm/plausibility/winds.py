@@ -175,7 +175,7 @@ def _amplitude(inputs: Inputs) -> Iterator[Implausible]:
     if LARGEST_AMPLITUDE < ratio < math.inf:
         reason = (
             f"In resonance at {shed.speed:.3g} m/s this lift alone moves the bare pipe by {ratio:.3g} diameters; a lift"
-            " that does not feel the motion means nothing beyond about one: the measurements of Griffin and Skop"
-            " end at 1.29 times the shape factor (quoted from memory)."
+            " that does not feel the motion means nothing beyond about one: the formula of Griffin and Skop"
+            " ends at 1.29 times the shape factor (quoted from memory)."
         )
         yield inputs.implausible("wind.lift_coefficient", reason)
