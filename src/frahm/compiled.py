@@ -1,24 +1,33 @@
-"""How frahm compiles: one decorator, so that flags and caching are the same everywhere.
+"""How frahm compiles: one decorator, so that flags and keeping are the same everywhere.
 
-Compiled code is kept on disk. numba renews it when the file of a kernel changes, but not when a kernel it calls does;
-here the place on disk is named after the contents of the module and of every frahm module it imports, directly or
-not, so what is loaded always belongs to the sources it is used with. It lies in the user's cache directory, which
-also serves installations that cannot be written to.
+Compiled code is kept on disk, where it serves installations that cannot be written to as well. Its folder is named
+after the contents of the module and of every frahm module it imports, directly or not, so what is loaded always
+belongs to the sources it is used with. What is kept is run, so it must be this user's own and whole: the folder is the
+user's alone, and every file begins with the hash of what follows.
 """
 
 from __future__ import annotations
 
 import functools
 import hashlib
+import logging
 import os
+import pickle
 import re
+import stat
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core.caching import NullCache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
+
+from frahm.errors import ParameterError
+from frahm.files import write_bytes
 
 # Contraction to fused multiply-add is allowed; NaN and infinity keep their meaning, because a NaN is how a kernel
 # says "there is no such root".
@@ -29,30 +38,140 @@ _ROOT = Path(__file__).resolve().parent
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function on first use, without the interpreter lock, and keep the machine code on disk."""
-    config: Any = numba.config
-    given = config.CACHE_DIR
-    config.CACHE_DIR = str(_cache_root() / _digest(function.__module__)[:16])
-    try:
-        return numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=_FLAGS)(function)
-    finally:
-        config.CACHE_DIR = given
+    compiled: Any = numba.njit(nogil=True, error_model="numpy", fastmath=_FLAGS)(function)
+    root = _cache_root()
+    if root is not None:
+        compiled._cache = KeptKernel(function, root / _digest(function.__module__)[:16])
+    return compiled
+
+
+class KeptKernel(NullCache):
+    """The machine code of a function on disk, a file for every signature.
+
+    numba's own cache takes a file for what it says it is: a damaged one ends every call, or is run. Nor does it say
+    which signature a file is of, so two processes that compile at once can give one the code of the other.
+
+    Parameters
+    ----------
+    function : callable
+        What is compiled.
+    folder : Path
+        Where its files lie; made when there is something to keep.
+    """
+
+    def __init__(self, function: Callable[..., Any], folder: Path):
+        self._folder = folder
+        code = function.__code__
+        name = re.sub(r"[^\w.]", "", function.__qualname__)
+        self._name = f"{function.__module__.rpartition('.')[2]}.{name}-{code.co_firstlineno}"
+        self._made_of = (numba.__version__, sys.version_info[:2], hashlib.sha256(code.co_code).hexdigest())
+
+    @property
+    def cache_path(self) -> str:
+        """The folder, for numba's statistics."""
+        return str(self._folder)
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Compiled code of a signature; None, and a word in the log, if what is there cannot be used."""
+        target_context.refresh()
+        key = self._key(sig, target_context.codegen())
+        try:
+            content = _own_content(self._path(key))
+            if content is None:
+                return None
+            return CompileResult._rebuild(target_context, *pickle.loads(_unsealed(key, content)))
+        except FileNotFoundError:
+            return None
+        except Exception:  # what is whole and can still not be loaded is as good as damaged
+            _say(f"A compiled kernel kept in {_cache_root()} is damaged and is compiled again.")
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep compiled code; if that cannot be, a word in the log: the code is there all the same."""
+        if data.library.has_dynamic_globals:  # addresses of this process stand in it
+            return
+        key = self._key(sig, data.codegen)
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            write_bytes(self._path(key), _sealed(key, dumps(data._reduce())))
+        except (OSError, ParameterError) as error:
+            _say(f"Compiled kernels cannot be kept in {_cache_root()}: {getattr(error, 'hint', None) or error}")
+
+    def _key(self, sig: Any, codegen: Any) -> bytes:
+        return repr((self._name, sig, codegen.magic_tuple(), self._made_of)).encode()
+
+    def _path(self, key: bytes) -> Path:
+        return self._folder / f"{self._name}.{hashlib.sha256(key).hexdigest()[:24]}.kernel"
+
+
+def _sealed(key: bytes, payload: bytes) -> bytes:
+    return hashlib.sha256(key + payload).digest() + payload
+
+
+def _unsealed(key: bytes, content: bytes) -> bytes:
+    size = hashlib.sha256().digest_size
+    if hashlib.sha256(key + content[size:]).digest() != content[:size]:
+        raise ValueError("the hash is that of something else")
+    return content[size:]
+
+
+def _own_content(path: Path) -> bytes | None:
+    """Bytes of a file of this user; those of anybody else are never loaded, because loading runs them."""
+    with path.open("rb") as stream:
+        if not _is_own(os.fstat(stream.fileno())):
+            _say(f"A compiled kernel kept in {_cache_root()} belongs to another user and is not used.")
+            return None
+        return stream.read()
 
 
 @functools.lru_cache(maxsize=1)
-def _cache_root() -> Path:
-    """The first of the usual places that can be written to."""
-    home = Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")
-    named = [os.environ.get(name) for name in ("NUMBA_CACHE_DIR", "LOCALAPPDATA", "XDG_CACHE_HOME")]
-    places = [Path(name) for name in named if name] + [home, Path(tempfile.gettempdir())]
-    for place in places:
+def _cache_root() -> Path | None:
+    """The first of the usual places that is this user's alone and can be written to; None if there is none."""
+    for place in _places():
         root = place / "frahm" / "kernels"
         try:
-            root.mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=root):
-                return root
+            root.mkdir(mode=0o700, parents=True, exist_ok=True)
+            if _made_private(root):
+                with tempfile.TemporaryFile(dir=root):
+                    return root
         except OSError:
             continue
-    return places[-1]
+    _say(
+        "No folder of this user alone can be written to, so compiled kernels are not kept and every start takes"
+        " minutes; NUMBA_CACHE_DIR can name one."
+    )
+    return None
+
+
+def _places() -> Iterator[Path]:
+    for name in ("NUMBA_CACHE_DIR", "LOCALAPPDATA", "XDG_CACHE_HOME"):
+        if os.environ.get(name):
+            yield Path(os.environ[name]).absolute()
+    try:
+        yield Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")
+    except RuntimeError:  # a user without a home
+        return
+
+
+def _made_private(folder: Path) -> bool:
+    """Whether a folder is this user's; nobody else may enter it then."""
+    found = folder.lstat()
+    if not stat.S_ISDIR(found.st_mode) or not _is_own(found):
+        return False
+    if found.st_mode & 0o077:
+        folder.chmod(0o700)
+    return True
+
+
+def _is_own(found: os.stat_result) -> bool:
+    """Whether it is of this user; on Windows the user's folders are closed to others by the system."""
+    return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
+
+
+@functools.cache
+def _say(sentence: str) -> None:
+    """A word in the log, once."""
+    logging.getLogger("frahm").warning(sentence)
 
 
 @functools.cache

@@ -1,8 +1,7 @@
 """What can go wrong around `frahm run`: one message, the exit code for it, and nothing half written."""
 
-import errno
 import json
-import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -77,13 +76,39 @@ def test_a_commented_case_beside_the_results_stays_as_it_is(tmp_path):
     assert (tmp_path / "summary.json").exists()
 
 
-def test_a_full_disk_is_one_message(case, tmp_path, monkeypatch):
-    def full(self, *arguments, **more):
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+FULL = """
+import resource, sys
+from frahm.cli import main
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv.pop(1)),) * 2)
+main()
+"""
 
-    monkeypatch.setattr("xarray.Dataset.to_netcdf", full)
-    assert refused(run("run", case, "--out", tmp_path / "o"), "No space left on device", "results.nc")
-    assert {entry.name for entry in (tmp_path / "o").iterdir()} == {"case.yaml"}
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits are set differently there")
+def test_a_full_disk_is_one_message_and_the_summary_is_kept(stored, case, tmp_path):
+    """What no more can be written to is a limit on the size of files: on a disk with no room left it is the same."""
+    room = (stored / "summary.json").stat().st_size + 1000
+    assert room < (stored / "results.nc").stat().st_size
+    folder = tmp_path / "o"
+    shutil.copytree(stored, folder)  # of an analysis before: its arrays must not stay beside another summary
+    command = [sys.executable, "-c", FULL, str(room), "run", case, "--out", str(folder)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert "results.nc" in done.stderr
+    assert "File too large" in done.stderr
+    assert {entry.name for entry in folder.iterdir()} == {"case.yaml", "summary.json"}
+    assert refused(run("show", folder), "results.nc", "No such file")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+@pytest.mark.parametrize("command", ["schema", "check jacket-pipe", "--help", "check jacket-pip"])
+def test_output_to_a_full_device_is_one_message(command):
+    with open("/dev/full", "w") as full:
+        called = [sys.executable, "-m", "frahm", *command.split()]
+        done = subprocess.run(called, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert done.stderr.startswith("frahm: ")
+    assert ("No space left on device" in done.stderr) == (command != "check jacket-pip")
 
 
 def test_a_missing_case_leaves_nothing_behind(tmp_path):

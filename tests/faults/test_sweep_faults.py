@@ -1,6 +1,5 @@
 """Bad studies, foreign stores, schedulers that are not there: one message, exit code 2, nothing touched."""
 
-import json
 import re
 
 import pytest
@@ -176,11 +175,12 @@ def test_the_store_of_another_study_needs_force(finished):
     assert sorted(file.name for file in finished.iterdir()) == ["good.yaml", "other.yaml", "s"]
 
 
-def test_the_store_of_another_version_is_not_gone_on_with(finished):
-    head = finished / "s" / "zarr.json"
-    data = json.loads(head.read_text())
-    data["attributes"]["frahm_version"] = "0.0.1"
-    head.write_text(json.dumps(data))
+def test_the_store_of_another_version_is_not_gone_on_with(folder, monkeypatch):
+    write_text(folder / "good.yaml", GOOD)
+    with monkeypatch.context() as older:
+        for module in ("layout", "sweeping", "batch"):
+            older.setattr(f"frahm.sweep.{module}.__version__", "0.0.1")
+        assert run("sweep", "good.yaml", "--store", "s").exit_code == 0
     assert "It holds a sweep by frahm 0.0.1" in refused("sweep", "good.yaml", "--store", "s", "--resume")
 
 
@@ -196,21 +196,25 @@ def test_a_folder_of_something_else_is_never_touched_even_by_force(folder):
     assert contents(folder) == before
 
 
-def test_a_damaged_store_is_named(finished):
+def test_a_damaged_store_is_named_and_made_whole_by_resumption(finished):
+    before = contents(finished)
     for file in (finished / "s" / "status").rglob("*"):
         if file.is_file():
             file.write_bytes(b"{}")
-    assert "store: given 's'; allowed: a folder that `frahm sweep` wrote. It is damaged" in refused(
-        "sweep", "good.yaml", "--store", "s", "--resume"
+    assert (
+        "store: given 's'; allowed: a folder that `frahm sweep` wrote. It is damaged (status; 6 of 6 points)"
+        in refused("show", "s")
     )
+    result = run("sweep", "good.yaml", "--store", "s", "--resume")
+    assert (result.exit_code, result.stderr) == (0, "frahm: 6 points were damaged and computed again.\n")
+    assert contents(finished) == before
 
 
 def test_a_store_somebody_writes_to_is_left_alone(finished):
     from pathlib import Path
 
-    from frahm.sweep.store import only_writer
+    from frahm.sweep.lock import only_writer
 
-    pytest.importorskip("fcntl")
     with only_writer(Path("s")):
         for how in ("--resume", "--force"):
             assert "Another sweep is writing to it" in refused("sweep", "good.yaml", "--store", "s", how)

@@ -10,7 +10,7 @@ from frahm.analysis.analysis import SCHEMA, Analysis
 from frahm.analysis.section import Check
 from frahm.case import load_case
 from frahm.errors import ParameterError
-from frahm.files import write_text, written_beside
+from frahm.files import remove_file, write_bytes, write_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,7 +20,10 @@ _KINDS_COMPRESSED = "fiu"
 
 
 def save_analysis(analysis: Analysis, folder: str | Path) -> list[Path]:
-    """Write the three files into an existing folder and return their paths.
+    """Write the three files into an existing folder, the summary first, and return their paths.
+
+    All of them are made in memory before anything is written; arrays of an earlier analysis go before its summary does,
+    so that a disk that is full never leaves those of one beside the summary of another.
 
     Raises
     ------
@@ -28,11 +31,13 @@ def save_analysis(analysis: Analysis, folder: str | Path) -> list[Path]:
         If a file cannot be written.
     """
     folder = Path(folder)
+    summary = json.dumps(analysis.summary(), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    arrays = _packed_arrays(analysis)
+    remove_file(folder / ARRAYS_FILE)
+    write_text(folder / SUMMARY_FILE, summary)
     if not _is_there(analysis, folder / CASE_FILE):  # a file its author commented stays as it is
         analysis.case.to_yaml(folder / CASE_FILE)
-    _write_arrays(analysis, folder / ARRAYS_FILE)
-    text = json.dumps(analysis.summary(), indent=2, allow_nan=False, ensure_ascii=False)
-    write_text(folder / SUMMARY_FILE, text + "\n")
+    write_bytes(folder / ARRAYS_FILE, arrays)
     return [folder / name for name in (CASE_FILE, SUMMARY_FILE, ARRAYS_FILE)]
 
 
@@ -110,14 +115,13 @@ def _is_there(analysis: Analysis, path: Path) -> bool:
         return False
 
 
-def _write_arrays(analysis: Analysis, path: Path) -> None:
+def _packed_arrays(analysis: Analysis) -> bytes | memoryview:
     whole = joined(analysis.data).assign_attrs(
         frahm_version=analysis.version, case=analysis.case.name, case_digest=analysis.case.digest
     )
     packed = {"zlib": True, "complevel": 4, "shuffle": True}
     encoding = {name: packed for name, v in whole.variables.items() if v.ndim and v.dtype.kind in _KINDS_COMPRESSED}
-    with written_beside(path) as temporary:
-        whole.to_netcdf(temporary, engine="h5netcdf", encoding=encoding)
+    return whole.to_netcdf(engine="h5netcdf", encoding=encoding)
 
 
 def _read_arrays(path: Path) -> dict[str, xr.Dataset]:

@@ -9,7 +9,7 @@ import typer
 import frahm
 from frahm.cli import cases, run
 from frahm.cli.design import design
-from frahm.cli.guarded import GuardedGroup
+from frahm.cli.guarded import GuardedGroup, told_if_full
 from frahm.cli.page import page
 from frahm.cli.reproduce import reproduce
 from frahm.cli.sweep import sweep
@@ -59,4 +59,5 @@ def _root(
 
 def main() -> None:
     """Run the command line."""
-    app()
+    with told_if_full():
+        app()

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import enum
+import errno
+import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from typing import Any
@@ -39,6 +42,34 @@ def held_interrupts() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
     if asked.is_set():
         raise KeyboardInterrupt
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
+
+
+@contextlib.contextmanager
+def told_if_full() -> Iterator[None]:
+    """Output that cannot be written for want of room ends in one message and the exit code for it."""
+    try:
+        try:
+            yield
+        finally:
+            if sys.stdout is not None:  # closed by the one who started the command
+                sys.stdout.flush()
+    except OSError as error:
+        if error.errno not in _FULL:
+            raise
+        _discard_output()
+        with contextlib.suppress(OSError):  # the messages may go to the same place
+            typer.echo(f"frahm: standard output: {error.strerror}.", err=True)
+        sys.exit(ExitCode.BAD_INPUT)
+
+
+def _discard_output() -> None:
+    """Python writes what is left in its buffer at its end, and would complain once more."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, sys.stdout.fileno())
+    os.close(nowhere)
 
 
 class GuardedGroup(TyperGroup):

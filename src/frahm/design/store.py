@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from frahm.design.study import DesignStudy
-from frahm.files import write_text, written_beside
+from frahm.files import remove_file, write_bytes, write_text
 
 SCHEMA = "frahm-design-1"
-BEST_FILE = "best.yaml"
+SUMMARY_FILE, ARRAYS_FILE, BEST_FILE = "summary.json", "results.nc", "best.yaml"
 
 
 def save_design(study: DesignStudy, folder: str | Path) -> list[Path]:
-    """Write the three files into an existing folder and return their paths.
+    """Write the three files into an existing folder, the summary first, and return their paths.
 
     Raises
     ------
@@ -23,12 +23,13 @@ def save_design(study: DesignStudy, folder: str | Path) -> list[Path]:
         If a file cannot be written.
     """
     folder = Path(folder)
+    summary = json.dumps(design_summary(study), indent=2, allow_nan=False, ensure_ascii=False) + "\n"
+    arrays = study.to_dataset().to_netcdf(engine="h5netcdf")
+    remove_file(folder / ARRAYS_FILE)
+    write_text(folder / SUMMARY_FILE, summary)
     study.best_case.to_yaml(folder / BEST_FILE)
-    with written_beside(folder / "results.nc") as temporary:
-        study.to_dataset().to_netcdf(temporary, engine="h5netcdf")
-    text = json.dumps(design_summary(study), indent=2, allow_nan=False, ensure_ascii=False)
-    write_text(folder / "summary.json", text + "\n")
-    return [folder / name for name in ("summary.json", "results.nc", BEST_FILE)]
+    write_bytes(folder / ARRAYS_FILE, arrays)
+    return [folder / name for name in (SUMMARY_FILE, ARRAYS_FILE, BEST_FILE)]
 
 
 def design_summary(study: DesignStudy) -> dict[str, Any]:

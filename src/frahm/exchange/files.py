@@ -13,7 +13,7 @@ from frahm.errors import ParameterError, nearest
 from frahm.exchange.layout import check_layout, dataset_of, layout_of
 from frahm.exchange.mat import read_mat, write_mat
 from frahm.exchange.tables import read_csv, write_csv
-from frahm.files import write_text, written_beside
+from frahm.files import write_bytes, write_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,8 +88,7 @@ def _ending(path: Path) -> str:
 
 
 def _write_netcdf(dataset: xr.Dataset, path: Path) -> list[Path]:
-    with written_beside(path) as temporary:
-        dataset.to_netcdf(temporary, engine="h5netcdf")
+    write_bytes(path, dataset.to_netcdf(engine="h5netcdf"))
     return [path]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 
 from frahm.errors import ParameterError
 from frahm.exchange.layout import check_layout, dataset_of, layout_of
-from frahm.files import written_beside
+from frahm.files import write_bytes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -40,8 +41,9 @@ def write_mat(dataset: xr.Dataset, path: Path) -> list[Path]:
     }
     if {"branch", "detached", "special_kind"} <= set(dataset.variables):
         content |= {"branches": _branches(dataset), "special_points": _special_points(dataset)}
-    with written_beside(path) as temporary, temporary.open("wb") as stream:
-        scipy.io.savemat(stream, content, long_field_names=True, oned_as="column", do_compression=True)
+    stream = io.BytesIO()
+    scipy.io.savemat(stream, content, long_field_names=True, oned_as="column", do_compression=True)
+    write_bytes(path, stream.getvalue())
     return [path]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -59,15 +60,16 @@ def new_figure(width: float = 160.0, height: float = 90.0) -> Figure:
 
 def save_figure(figure: Figure, stem: str | Path) -> list[Path]:
     """Write `stem`.png and `stem`.svg, each complete or not at all; return their paths."""
-    from frahm.files import written_beside
+    from frahm.files import write_bytes
 
     paths = [Path(f"{stem}.svg"), Path(f"{stem}.png")]
     arrange(figure)
     for path in paths:
         metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
         packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}} if path.suffix == ".png" else {}
-        with written_beside(path) as temporary:
-            figure.savefig(temporary, dpi=160, metadata=metadata, **packed)
+        drawn = io.BytesIO()
+        figure.savefig(drawn, format=path.suffix.removeprefix("."), dpi=160, metadata=metadata, **packed)
+        write_bytes(path, drawn.getvalue())
     return paths
 
 

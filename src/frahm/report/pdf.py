@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from frahm.errors import ParameterError
-from frahm.files import written_beside
+from frahm.files import write_bytes
 
 _SCRIPT = re.compile(r"<script\b.*?</script>", re.DOTALL)
 _PLOT = re.compile(r'<div class="plot"[^>]*></div>')
@@ -40,8 +40,7 @@ def write_pdf(report: str | Path) -> Path:
         allowed = "a folder with report.html in it"
         raise ParameterError("DIR", str(report.parent), allowed, hint=f"{error.strerror}.") from None
     path = report.with_suffix(".pdf")
-    with written_beside(path) as temporary:
-        printer(string=paper_text(text)).write_pdf(temporary)
+    write_bytes(path, printer(string=paper_text(text)).write_pdf())
     return path
 
 

@@ -6,8 +6,9 @@ The room is called like its verb: ``frahm.sweep(study, store=path)`` is `frahm.s
 import sys
 import types
 
+from frahm.sweep.layout import is_sweep
 from frahm.sweep.local import processes
-from frahm.sweep.store import is_sweep, stored_study
+from frahm.sweep.store import stored_study
 from frahm.sweep.study import Study
 from frahm.sweep.study_file import load_study, study_schema, study_template
 from frahm.sweep.summary import SweepSummary, summary_of, values_text

@@ -58,6 +58,8 @@ def is_closed_form(study: Study, name: str) -> bool:
 def _guarded(function: Callable[[Point, Any], Found], point: Point, asked: Any) -> Found:
     try:
         return function(point, asked)
+    except OSError:  # of the machine, not of the point: another time it may go well
+        raise
     except Exception as error:  # a sweep never dies: any failure of a point is a value
         return Found(failure=_said(error))
 
@@ -94,6 +96,8 @@ def equilibria(study: Study, indices: np.ndarray) -> tuple[dict[str, np.ndarray]
         try:
             found = _map(first, {name: column[rows] for name, column in values.items()}, rows.size)
             pipe[rows], relative[rows], stability[rows] = found
+        except OSError:
+            raise
         except Exception as error:
             if rows.size == 1:
                 failures[int(rows[0])] = _said(error)

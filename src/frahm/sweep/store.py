@@ -4,42 +4,43 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import shutil
-import tempfile
-import warnings
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from frahm import __version__
-from frahm.case import field_table
 from frahm.errors import ParameterError
+from frahm.files import write_text
 from frahm.sweep.batch import Batch
-from frahm.sweep.reasons import Reasons
-from frahm.sweep.study import Axes, Study
-from frahm.sweep.study_file import load_study
-from frahm.sweep.variables import ROOTS, STATUS_CODES, Status, Variable, variables_of
-
-SCHEMA = "frahm-sweep-1"
-_CHUNK = 16_384  # points
-_ALLOWED = "a folder that `frahm sweep` wrote"
-_STATUS = Variable("status", "what became of the point", codes=STATUS_CODES, dtype="i1")
-_REASON = Variable(
-    "reason", "why the point failed or is unverified", codes="0 none, others: see the attribute reasons", dtype="i4"
+from frahm.sweep.layout import (
+    ALLOWED,
+    HEAD,
+    attributes_of,
+    chunk_counts,
+    chunk_is_there,
+    chunk_part,
+    chunk_shape,
+    head_of,
+    known_values,
+    lay_out,
+    write_chunks,
+    write_reasons,
+    wrong_descriptions,
 )
-_SEED = Variable("seed", "seed of the initial states sampled at this point", dtype="i8")
+from frahm.sweep.lock import beside, unwritable
+from frahm.sweep.reasons import Reasons
+from frahm.sweep.study import Study
+from frahm.sweep.study_file import load_study
+from frahm.sweep.variables import Status, variables_of
 
-
-def is_sweep(folder: str | Path) -> bool:
-    """Whether a folder holds the store of a sweep."""
-    try:
-        return _attributes(Path(folder)).get("schema") == SCHEMA
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return False
+_LISTED = 4  # names in a sentence
+_LOOKS = 3
+_OF_THE_MACHINE = (OSError, MemoryError)  # nothing is known about the bytes then
 
 
 def stored_study(folder: str | Path) -> Study:
@@ -50,22 +51,51 @@ def stored_study(folder: str | Path) -> Study:
     ParameterError
         If the folder does not hold a sweep, or one that cannot be read.
     """
-    if not is_sweep(folder):
-        raise ParameterError("store", str(folder), _ALLOWED)
+    attributes = attributes_of(Path(folder))
     try:
-        return load_study(json.loads(_attributes(Path(folder))["study"]))
-    except (ValueError, KeyError) as error:
+        return load_study(json.loads(attributes["study"]))
+    except (ValueError, KeyError, TypeError) as error:
         hint = f"The study in it cannot be read: {error}."
-        raise ParameterError("store", str(folder), _ALLOWED, hint=hint) from None
+        raise ParameterError("store", str(folder), ALLOWED, hint=hint) from None
 
 
 def stored_version(folder: str | os.PathLike[str]) -> str:
     """The version of frahm that made a store."""
-    return str(_attributes(Path(folder))["frahm_version"])
+    return str(attributes_of(Path(folder))["frahm_version"])
 
 
-def _attributes(folder: Path) -> dict[str, Any]:
-    return dict(json.loads((folder / "zarr.json").read_text(encoding="utf-8"))["attributes"])
+@dataclass(eq=False)
+class Damage:
+    """What of a store is not as it was written.
+
+    Attributes
+    ----------
+    arrays : set of str
+        Names of the arrays that lost something.
+    chunks : set of int
+        Chunks of points that say they are finished, or no longer say what they are.
+    points : int
+        How many points that is.
+    descriptions : dict of str
+        What the description of an array should be, by the name of the array.
+    known : set of str
+        Damaged arrays that the study itself says.
+    """
+
+    arrays: set[str] = field(default_factory=set)
+    chunks: set[int] = field(default_factory=set)
+    points: int = 0
+    descriptions: dict[str, str] = field(default_factory=dict)
+    known: set[str] = field(default_factory=set)
+
+    def sentence(self, points: int) -> str:
+        """What is damaged, and the way out; empty if nothing is."""
+        names = sorted(self.arrays | self.known | set(self.descriptions))
+        if not names:
+            return ""
+        listed = ", ".join(names[:_LISTED]) + (f" and {len(names) - _LISTED} more" if len(names) > _LISTED else "")
+        counted = f"; {self.points} of {points} points" if self.points else ""
+        return f"It is damaged ({listed}{counted}). Go on with --resume (resume=True): it is made whole again."
 
 
 @dataclass(eq=False)
@@ -107,12 +137,11 @@ class Store:
             return
         todo = sorted(self.changed)
         with _written(self.path):
-            group = _group(self.path)
+            group = _group(self.path, "r+")
             if self.reasons.changed:
-                self._write_reasons(group)
+                self._write_reasons()
             for name, values in (*self.columns.items(), ("reason", self.reason), ("status", self.status)):
-                for chunk in todo:
-                    self._write(group[name], values, chunk)
+                write_chunks(group[name], values, todo)
         self.changed -= set(todo)
 
     def finish(self) -> None:
@@ -121,110 +150,124 @@ class Store:
             return
         before = self.reason.copy()
         with _written(self.path):
-            group = _group(self.path)
+            group = _group(self.path, "r+")
             self.reason[:] = self.reasons.ordered(self.reason)
-            self._write_reasons(group)  # old and new codes differ in sign: both stand in the table meanwhile
-            for chunk in sorted(self._chunks_of(np.flatnonzero(before != self.reason))):
-                self._write(group["reason"], self.reason, chunk)
+            self._write_reasons()  # old and new codes differ in sign: both stand in the table meanwhile
+            write_chunks(group["reason"], self.reason, sorted(self._chunks_of(np.flatnonzero(before != self.reason))))
             self.reasons.forget_provisional()
-            self._write_reasons(group)
+            self._write_reasons()
+
+    def mend(self, damage: Damage) -> None:
+        """Make a damaged store whole again; the points that lost something are as if they were not computed yet."""
+        lost = self._points_of(damage.chunks)
+        with _written(self.path):
+            for name, text in damage.descriptions.items():
+                (self.path / name).mkdir(exist_ok=True)
+                write_text(self.path / name / HEAD, text)
+            group = _group(self.path, "r+")
+            for name, values in known_values(self.study) if damage.known else ():
+                if name in damage.known:
+                    write_chunks(group[name], values)
+            self.status[lost] = Status.PENDING
+            write_chunks(group["status"], self.status, sorted(damage.chunks))  # before the values they speak of
+        self.reason[lost] = 0
+        for variable in variables_of(self.study):
+            self.columns[variable.name][lost] = variable.blank
+        self.changed |= damage.chunks
+        self.flush()
+
+    def _points_of(self, chunks: Iterable[int]) -> np.ndarray:
+        """Which points some chunks hold."""
+        numbers = np.arange(self.study.size)
+        places = np.unravel_index(numbers, self.study.shape)
+        sizes = chunk_shape(self.study.shape)
+        of = np.ravel_multi_index(
+            tuple(place // size for place, size in zip(places, sizes, strict=True)), chunk_counts(self.study.shape)
+        )
+        return numbers[np.isin(of, list(chunks))]
 
     def _chunks_of(self, indices: np.ndarray) -> set[int]:
         """Numbers of the chunks that hold some points."""
         shape = self.study.shape
         places = np.unravel_index(indices, shape)
         chunks = tuple(place // size for place, size in zip(places, chunk_shape(shape), strict=True))
-        return set(np.ravel_multi_index(chunks, _chunk_counts(shape)).tolist())
+        return set(np.ravel_multi_index(chunks, chunk_counts(shape)).tolist())
 
-    def _write_reasons(self, group: Any) -> None:
-        group.attrs["reasons"] = self.reasons.text
+    def _write_reasons(self) -> None:
+        write_reasons(self.path, self.reasons.text)
         self.reasons.changed = False
-
-    def _write(self, array: Any, values: np.ndarray, chunk: int) -> None:
-        shape = self.study.shape
-        whole = values.reshape(*shape, *values.shape[1:])
-        places = np.unravel_index(chunk, _chunk_counts(shape))
-        part = tuple(slice(i * c, (i + 1) * c) for i, c in zip(places, chunk_shape(shape), strict=True))
-        array[part] = whole[part]
-
-
-def chunk_shape(shape: tuple[int, ...]) -> tuple[int, ...]:
-    """Chunks of whole runs of the fastest axes: points that are computed together are stored together."""
-    sizes, room = [1] * len(shape), _CHUNK
-    for axis in range(len(shape) - 1, -1, -1):
-        if shape[axis] > room:
-            sizes[axis] = max(1, room)
-            break
-        sizes[axis] = shape[axis]
-        room //= shape[axis]
-    return tuple(sizes)
-
-
-def _chunk_counts(shape: tuple[int, ...]) -> tuple[int, ...]:
-    return tuple(-(-n // c) for n, c in zip(shape, chunk_shape(shape), strict=True))
 
 
 def create_store(path: Path, study: Study) -> Store:
-    """New store; the folder appears complete. A sweep that stands there gives way."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        beside = Path(tempfile.mkdtemp(prefix=f".{path.name[:40]}-", dir=path.parent))
-    except (OSError, ValueError) as error:
-        raise _unwritable(path, error) from None
+    """New store; the folder appears complete, and a sweep that stands there gives way. For the only writer."""
+    room = beside(path, "new")
     try:
         with _written(path):
-            _lay_out(beside / "new", study)
-            (beside / "new").chmod(0o777 & ~_umask())
+            room.mkdir()
+            lay_out(room / "new", study)
             if path.exists():
-                path.rename(beside / "old")
-            (beside / "new").rename(path)
+                path.rename(room / "old")
+            (room / "new").rename(path)
     finally:
-        shutil.rmtree(beside, ignore_errors=True)
+        shutil.rmtree(room, ignore_errors=True)
     return _blank(path, study)
 
 
+def clear_beside(path: Path) -> None:
+    """Remove what a writer that was killed while it made the store left beside it. For the only writer.
+
+    Was it killed between the two renamings that put the new store in the place of the old one, the old one is still
+    there.
+    """
+    room = beside(path, "new")
+    if not room.is_dir():
+        return
+    with _written(path):
+        if (room / "old").exists() and not path.exists():
+            (room / "old").rename(path)
+        shutil.rmtree(room)
+
+
 def open_store(path: Path) -> Store:
-    """The store of a sweep, all of it in memory; nothing on disk is touched."""
-    study = stored_study(path)
-    store = _blank(path, study)
-    try:
-        group = _group(path)
-        for name, values in (*store.columns.items(), ("status", store.status), ("reason", store.reason)):
-            values[...] = group[name][...].reshape(values.shape)
-        store.reasons = Reasons.read(group.attrs["reasons"], store.reason)
-    except Exception as error:  # the codecs raise what they like for bytes that are none of theirs
-        hint = f"It is damaged: {type(error).__name__}: {error}."
-        raise ParameterError("store", str(path), _ALLOWED, hint=hint) from None
+    """The store of a sweep, all of it in memory; nothing on disk is touched.
+
+    Raises
+    ------
+    ParameterError
+        If it is not one, or is damaged.
+    """
+    store, damage = _read(path)
+    hint = damage.sentence(store.study.size)
+    if hint:
+        raise ParameterError("store", str(path), ALLOWED, hint=hint)
     return store
 
 
-def resumed_store(path: Path) -> Store:
-    """The store of a sweep, to go on with it; what a writer that was killed left half done is removed."""
+def resumed_store(path: Path) -> tuple[Store, int]:
+    """The store of a sweep, to go on with it, and how many of its points were damaged. For the only writer.
+
+    What a writer that was killed left half done is removed, and what is damaged is mended.
+    """
     for left in path.rglob("*.partial"):
         left.unlink(missing_ok=True)
-    return open_store(path)
+    store, damage = _read(path)
+    if damage.sentence(store.study.size):
+        store.mend(damage)
+    return store, damage.points
 
 
-@contextlib.contextmanager
-def only_writer(path: Path) -> Iterator[None]:
-    """Inside this block no other process fills the store (where the system has such locks; they end with a process)."""
-    try:
-        import fcntl
-    except ImportError:  # Windows
-        yield
-        return
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            hint = "Another sweep is writing to it."
-            raise ParameterError("store", str(path), "a store nobody else writes to", hint=hint) from None
-        except OSError:  # a file system without locks
-            pass
-        yield
-    finally:
-        os.close(handle)
+def check_complete(path: Path) -> None:
+    """Raise a ParameterError if a chunk of a finished point, or of an axis, is lost; only the state of points is read.
+
+    Changed bits are found by whoever reads the chunk: every one has its checksum.
+    """
+    store = _blank(path, stored_study(path))
+    damage = Damage()
+    _read_state(store, damage)
+    _look_for_chunks(store, damage)
+    hint = damage.sentence(store.study.size)
+    if hint:
+        raise ParameterError("store", str(path), ALLOWED, hint=hint)
 
 
 def _blank(path: Path, study: Study) -> Store:
@@ -233,58 +276,92 @@ def _blank(path: Path, study: Study) -> Store:
     return Store(path, study, columns, status, reason, Reasons(), set())
 
 
-def _lay_out(path: Path, study: Study) -> None:
+def _read(path: Path) -> tuple[Store, Damage]:
+    """All that can be read of a store, and what cannot."""
+    store, damage = _blank(path, stored_study(path)), Damage()
+    damage.descriptions = wrong_descriptions(path, head_of(path))
+    undecided = _read_state(store, damage)
+    _look_for_chunks(store, damage)
+    group = _group(path, "r")
+    for name, values in store.columns.items():
+        _note(damage, name, _read_chunks(path, group[name], values))
+    for name in _known_names(store.study, group):
+        if _read_chunks(path, group[name], np.empty(group[name].shape, group[name].dtype)):
+            damage.known.add(name)
+    _read_reasons(store, group, damage)
+    lost = store._points_of(damage.chunks)
+    damage.points = int(np.count_nonzero((store.status[lost] != Status.PENDING) | np.isin(lost, undecided)))
+    return store, damage
+
+
+def _read_state(store: Store, damage: Damage) -> np.ndarray:
+    """Read the state of the points; returns those whose state cannot be read.
+
+    It comes before all else, as it is written after all else: what a writer adds meanwhile does no harm then.
+    """
+    bad = _read_chunks(store.path, _group(store.path, "r")["status"], store.status)
+    _note(damage, "status", bad)
+    return store._points_of(bad) if bad else np.empty(0, dtype=int)
+
+
+def _look_for_chunks(store: Store, damage: Damage) -> None:
+    """Find chunks that are not there and should be: of finished points, and of what the study says."""
+    group = _group(store.path, "r")
+    finished = store._chunks_of(np.flatnonzero(store.status != Status.PENDING))
+    for name in (*store.columns, "reason"):
+        _note(damage, name, {chunk for chunk in finished if not chunk_is_there(store.path, group[name], chunk)})
+    for name in _known_names(store.study, group):
+        chunks = range(math.prod(group[name].cdata_shape))
+        if not all(chunk_is_there(store.path, group[name], chunk) for chunk in chunks):
+            damage.known.add(name)
+
+
+def _read_reasons(store: Store, group: Any, damage: Damage) -> None:
+    """Read the reasons of the points and the table of them, which a writer may be changing: it is looked at again."""
+    unknown = np.empty(0, dtype=int)
+    for _ in range(_LOOKS):
+        _note(damage, "reason", _read_chunks(store.path, group["reason"], store.reason))
+        store.reasons = Reasons.read(attributes_of(store.path)["reasons"], store.reason)
+        unknown = np.flatnonzero(~np.isin(store.reason, [0, *store.reasons.sentences]))
+        if not unknown.size:
+            return
+    _note(damage, "reason", store._chunks_of(unknown))
+
+
+def _read_chunks(path: Path, array: Any, values: np.ndarray) -> set[int]:
+    """Read an array; what is damaged is left as it is, and the numbers of its chunks are returned."""
+    whole, bad = values.reshape(array.shape), set()
+    with _readable(path):
+        try:
+            whole[...] = array[...]
+        except _OF_THE_MACHINE:
+            raise
+        except Exception:  # the codecs raise what they like for bytes that are none of theirs
+            for chunk in range(math.prod(array.cdata_shape)):
+                part = chunk_part(array, chunk)
+                try:
+                    whole[part] = array[part]
+                except _OF_THE_MACHINE:
+                    raise
+                except Exception:
+                    bad.add(chunk)
+    return bad
+
+
+def _note(damage: Damage, name: str, chunks: set[int]) -> None:
+    if chunks:
+        damage.arrays.add(name)
+        damage.chunks |= chunks
+
+
+def _known_names(study: Study, group: Any) -> list[str]:
+    return [*study.axes_given, *(name for name in ("seed",) if name in group)]
+
+
+def _group(path: Path, mode: Literal["r", "r+"]) -> Any:
     import zarr
 
-    attributes = {
-        "title": study.title or study.name,
-        "schema": SCHEMA,
-        "study": study.text,
-        "study_digest": study.digest,
-        "frahm_version": __version__,
-        "reasons": Reasons().text,
-    }
-    group = zarr.create_group(path, zarr_format=3, attributes=attributes)
-    facts = field_table(Axes)
-    for name, values in study.axes_given.items():
-        more: dict[str, Any] = {"long_name": facts[name].title.lower(), "units": facts[name].unit or "1"}
-        array = group.create_array(
-            name, shape=(len(values),), dtype="f8", chunks=(len(values),), dimension_names=(name,), attributes=more
-        )
-        array[:] = np.array(values)
-    for variable in (*variables_of(study), _REASON, _STATUS):
-        _add(group, study, variable, fill=variable.blank if variable not in (_REASON, _STATUS) else 0)
-    if "attractors" in study.asked or "fatigue" in study.asked:
-        seeds = np.array([study.seed_at(index) for index in range(study.size)], dtype="i8")
-        _add(group, study, _SEED, fill=0)[...] = seeds.reshape(study.shape)
-    with warnings.catch_warnings():  # not yet part of the zarr 3 specification, and what xarray wants for a quick look
-        warnings.filterwarnings("ignore", message="Consolidated metadata")
-        zarr.consolidate_metadata(path)
-
-
-def _add(group: Any, study: Study, variable: Variable, fill: float) -> Any:
-    attributes: dict[str, Any] = variable.attributes if variable not in (_STATUS, _SEED) else _plain(variable)
-    more = ((ROOTS,), (ROOTS,), ("root",)) if variable.roots else ((), (), ())
-    return group.create_array(
-        variable.name,
-        shape=(*study.shape, *more[0]),
-        chunks=(*chunk_shape(study.shape), *more[1]),
-        dimension_names=(*study.axes_given, *more[2]),
-        dtype=variable.dtype,
-        fill_value=fill,
-        attributes=attributes,
-    )
-
-
-def _plain(variable: Variable) -> dict[str, Any]:
-    """Attributes of a variable that is known at every point."""
-    return {key: text for key, text in variable.attributes.items() if key != "missing"}
-
-
-def _group(path: Path) -> Any:
-    import zarr
-
-    return zarr.open_group(path, mode="r+")
+    return zarr.open_group(path, mode=mode, use_consolidated=True)
 
 
 @contextlib.contextmanager
@@ -292,15 +369,13 @@ def _written(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise unwritable(path, error) from None
 
 
-def _unwritable(path: Path, error: Exception) -> ParameterError:
-    reason = getattr(error, "strerror", None) or str(error)
-    return ParameterError("store", str(path), "a folder that can be written", hint=f"{reason}.")
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+@contextlib.contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        hint = f"{error.strerror or error}."
+        raise ParameterError("store", str(path), "a folder that can be read", hint=hint) from None

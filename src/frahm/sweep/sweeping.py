@@ -17,7 +17,17 @@ import numpy as np
 from frahm import __version__
 from frahm.errors import ParameterError, check_count
 from frahm.sweep.batch import Batch, OtherVersionError, batch_size, evaluated
-from frahm.sweep.store import Store, create_store, is_sweep, only_writer, resumed_store, stored_study, stored_version
+from frahm.sweep.layout import ALLOWED, HEAD, is_sweep
+from frahm.sweep.lock import only_writer
+from frahm.sweep.store import (
+    Store,
+    check_complete,
+    clear_beside,
+    create_store,
+    resumed_store,
+    stored_study,
+    stored_version,
+)
 from frahm.sweep.study import Study
 from frahm.sweep.study_file import load_study
 from frahm.sweep.summary import SweepSummary, summary_of
@@ -86,50 +96,66 @@ def sweep(
     Warns
     -----
     SweepWarning
-        Once, if points failed, are unverified or were not computed.
+        Once, if points failed, are unverified or were not computed; once, if some were damaged on disk.
     """
     study = load_study(study)
     if executor is not None and not isinstance(executor, Executor):
         raise ParameterError("executor", executor, "a concurrent.futures.Executor, or None for threads")
-    path = Path(store)
+    path = _real(Path(store))
     points = batch_size(study) if batch is None else check_count("batch", batch)
-    fresh = _claimed(study, path, resume=resume, force=force)
     report = progress or (lambda title, done, total: None)
     with only_writer(path):
-        lost = _Filling(fresh or resumed_store(path), points, report).run(executor)
-    summary = summary_of(path)
-    for sentence in _grouped(summary, lost):
+        clear_beside(path)
+        filled, damaged = _claimed(study, path, resume=resume, force=force)
+        lost = _Filling(filled, points, report).run(executor)
+        summary = summary_of(path)
+    for sentence in _grouped(summary, lost, damaged):
         warnings.warn(sentence, SweepWarning, stacklevel=2)
     return opened(path)
 
 
 def opened(path: str | os.PathLike[str]) -> xr.Dataset:
-    """The dataset of a store, read on demand."""
+    """The dataset of a store, read on demand.
+
+    Raises
+    ------
+    ParameterError
+        If the folder does not hold a sweep, or something of a finished point or an axis is lost. What is read later
+        raises a ValueError where it was changed on disk: every part of every array has its checksum.
+    """
     import xarray as xr
 
-    return xr.open_zarr(path, chunks=None)
+    check_complete(Path(path))
+    try:
+        return xr.open_zarr(path, chunks=None)
+    except ValueError as error:  # the axes are read at once
+        hint = f"It is damaged: {error} Go on with --resume (resume=True): it is made whole again."
+        raise ParameterError("store", str(path), ALLOWED, hint=hint) from None
 
 
-def _claimed(study: Study, path: Path, *, resume: bool, force: bool) -> Store | None:
-    """A new store where there is none or one may be replaced; None if the one that is there is to be gone on with."""
+def _real(path: Path) -> Path:
+    """The store itself, so that it has one lock whatever it is called; a path that is no link stays as it was given."""
+    return Path(os.path.realpath(path)) if path.is_symlink() else path
+
+
+def _claimed(study: Study, path: Path, *, resume: bool, force: bool) -> tuple[Store, int]:
+    """A new store where there is none or one may be replaced, else the one that is there; and its damaged points."""
     if path.exists() and not is_sweep(path):
         if not path.is_dir():
             raise ParameterError("store", str(path), "a folder", hint="It is a file.")
         if any(path.iterdir()):
-            raise ParameterError("store", str(path), "a new folder, or a store of this study", hint=_FOREIGN)
+            hint = f"Its {HEAD} cannot be read. {_FOREIGN}" if (path / HEAD).exists() else _FOREIGN
+            raise ParameterError("store", str(path), "a new folder, or a store of this study", hint=hint)
         path.rmdir()
-    if not path.exists():
-        return create_store(path, study)
-    if force and not (resume and _same(study, path)):
-        with only_writer(path):
-            return create_store(path, study)
+    if not path.exists() or (force and not (resume and _same(study, path))):
+        return create_store(path, study), 0
     if not _same(study, path):
         hint = f"It holds {_described(study, path)}. Choose another folder, or replace it with --force (force=True)."
         raise ParameterError("store", str(path), "a new folder, or a store of this study", hint=hint)
     if not resume:
         hint = "It holds this study; go on with --resume (resume=True), or begin anew with --force (force=True)."
         raise ParameterError("store", str(path), "a new folder", hint=hint)
-    return None
+    return resumed_store(path)
 
 
 _FOREIGN = "It holds other files, which a sweep never touches."
@@ -250,8 +276,10 @@ def _batches(pending: np.ndarray, points: int) -> Iterator[tuple[np.ndarray, int
         yield pending[start : start + points], 1
 
 
-def _grouped(summary: SweepSummary, lost: dict[str, int]) -> Iterator[str]:
-    """One sentence for everything that is not as it should be; none if all is well."""
+def _grouped(summary: SweepSummary, lost: dict[str, int], damaged: int) -> Iterator[str]:
+    """One sentence for everything that is not as it should be, and one for what was mended; none if all is well."""
+    if damaged:
+        yield f"{damaged} points were damaged and computed again."
     troubles = [*summary.troubles, *(f"{count} points could not be computed: {why}" for why, count in lost.items())]
     if troubles or summary.pending:
         yield " ".join([f"{summary.counts}.", *troubles])
