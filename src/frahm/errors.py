@@ -15,12 +15,12 @@ _LONGEST = {"name": 120, "value": 240, "allowed": 1500, "where": 400, "hint": 80
 _MISTAKES = (AssertionError, ImportError, NameError, NotImplementedError)
 
 
-def printable(text: str, longest: int = 2000) -> str:
+def printable(text: str, longest: int | None = 2000) -> str:
     """Text as one line that is safe on a terminal: no control characters, no overrides of direction, not too long.
 
     What cannot be printed stands as an escape, such as ``\\x1b``; of a text that is too long the middle is left out.
     """
-    if len(text) > longest:
+    if longest is not None and len(text) > longest:
         half = (longest - 3) // 2
         text = f"{text[:half]}...{text[len(text) - half :]}"
     return text if text.isprintable() else "".join(c if c.isprintable() else _escape(c) for c in text)

@@ -10,6 +10,7 @@ import typer
 from frahm.cli.cases import CaseArgument
 from frahm.cli.folder import holds_design
 from frahm.cli.guarded import ExitCode, held_interrupts
+from frahm.cli.terminal import say
 
 if TYPE_CHECKING:
     from frahm.analysis import Analysis
@@ -70,12 +71,12 @@ def show(folder: FolderArgument) -> None:
 
     text = stored_design_text(folder) or stored_sweep_text(folder)
     if text is not None:
-        typer.echo(text)
+        say(text)
         return
     from frahm.analysis import load_analysis
     from frahm.cli.results import results_text
 
-    typer.echo(results_text(load_analysis(folder)))
+    say(results_text(load_analysis(folder)))
 
 
 def warmup() -> None:
