@@ -9,16 +9,15 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-
 _LONGEST = {"name": 120, "value": 240, "allowed": 1500, "where": 400, "hint": 800}  # characters in a message
 # Wrong types and sizes are what a damaged or foreign file leads to; these four are only ever mistakes of the program.
 _MISTAKES = (AssertionError, ImportError, NameError, NotImplementedError)
 
 
 def printable(text: str, longest: int | None = 2000) -> str:
-    """Text as one line that is safe on a terminal: no control characters, no overrides of direction, not too long.
+    r"""Text as one line that is safe on a terminal: no control characters, no overrides of direction, not too long.
 
-    What cannot be printed stands as an escape, such as ``\\x1b``; of a text that is too long the middle is left out.
+    What cannot be printed stands as an escape, such as ``\x1b``; of a text that is too long the middle is left out.
     """
     if longest is not None and len(text) > longest:
         half = (longest - 3) // 2

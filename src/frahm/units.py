@@ -18,6 +18,8 @@ _QUANTITY = re.compile(rf"({_NUMBER})(.*)", re.DOTALL)
 _TERM = r"\(*(?:1|%|[^\W\d]+°?(?:(?:\^|\*\*)-?[1-9]|[²³⁴])?)\)*"
 # Only names, products, quotients and one-digit powers reach the parser of the registry: it would evaluate 9**9**9.
 _UNIT = re.compile(rf"{_TERM}(?:[*/· ]{_TERM})*")
+_DECIMAL_COMMA = re.compile(r"[-+]?[0-9]*,[0-9]+(?:[eE][-+]?[0-9]+)?(?=[^0-9,.]|$)")
+_POWER = re.compile(r"(?<=[^\W\d_])(-?[1-9])(?![0-9.])")  # of the conventions for netCDF: m s-1 is m*s^-1
 _LONGEST = 80
 _COMMON = {("mm", "m"): 1e-3, ("Hz", "rad/s"): 2 * math.pi}  # factors, to the last bit those of the registry
 
@@ -59,6 +61,10 @@ def si_value(value: str, unit: str, *, name: str = "value") -> float:
     ParameterError
         If the text is not a number with a unit, the unit is unknown, or it measures something else. A frequency
         in ``1/s`` is refused, because it does not say whether turns or radians are counted.
+
+    Notes
+    -----
+    Units are written as in ``kN/m^3``, or with powers as in ``N m-3`` (UDUNITS, which netCDF files use).
     """
     number, unit_text = _split(value, unit, name)
     if not unit_text:
@@ -79,9 +85,19 @@ def with_unit(unit: str) -> str:
 def _split(value: Any, unit: str, name: str) -> tuple[float, str]:
     text = " ".join(str(value).replace("\N{MINUS SIGN}", "-").split()) if len(value) <= _LONGEST else ""
     found = _QUANTITY.fullmatch(text)
+    comma = _DECIMAL_COMMA.match(text)
+    if comma:
+        hint = f"Write a point as decimal sign: {text.replace(',', '.', 1)!r}."
+        raise ParameterError(name, value, with_unit(unit), hint=hint)
     if found is None:
         raise ParameterError(name, value, with_unit(unit))
-    return float(found[1]), re.sub(r" ?(\*\*|[*/·^()]) ?", r"\1", found[2].strip())
+    return float(found[1]), _plain(found[2])
+
+
+def _plain(unit_text: str) -> str:
+    """A unit without needless blanks and with signs for its powers and products."""
+    text = re.sub(r" ?(\*\*|[*/·^()]) ?", r"\1", unit_text.strip())
+    return re.sub(r"(?<=\w)\.(?=[^\W\d])", "*", _POWER.sub(r"^\1", text))
 
 
 def _convert(number: float, unit_text: str, unit: str, name: str, value: str) -> float:
@@ -108,7 +124,7 @@ def _by_registry(number: float, unit_text: str, unit: str, name: str, value: str
         near = {unit.lower(): unit for unit in known}.get(unit_text.lower()) or nearest(unit_text, known)
         hint = f"Unknown unit {unit_text!r}." + (f" Did you mean {near!r}?" if near else "")
         raise ParameterError(name, value, with_unit(unit), hint=hint) from None
-    measure = "turns or radians per second" if unit_text == "1/s" and unit == "rad/s" else f"[{unit or '-'}]"
+    measure = "turns or radians per second" if unit_text in ("1/s", "s^-1") and unit == "rad/s" else f"[{unit or '-'}]"
     raise ParameterError(name, value, with_unit(unit), hint=f"{unit_text!r} does not measure {measure}.")
 
 
