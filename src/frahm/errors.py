@@ -74,8 +74,8 @@ class ParameterError(ValueError):
 
 
 @contextlib.contextmanager
-def door(name: str, value: Any, allowed: str, hint: str = "It is damaged, or of another program.") -> Iterator[None]:
-    """Guard a block that takes apart what a file holds: whatever that leads to is a `ParameterError`.
+def door(name: str, value: Any, allowed: str, hint: str | None = None) -> Iterator[None]:
+    """Guard a block that takes apart what a file or a foreign object holds: what that leads to is a `ParameterError`.
 
     The block should do nothing else. Names that do not exist, failed assertions and the like are mistakes of the
     program, not of the file, and stay what they are.
@@ -85,7 +85,7 @@ def door(name: str, value: Any, allowed: str, hint: str = "It is damaged, or of 
     name, value, allowed : str, object, str
         See `ParameterError`.
     hint : str
-        Said where the cause has no words of its own.
+        What is wrong, probably; by default the words of the cause.
 
     Raises
     ------
@@ -97,8 +97,8 @@ def door(name: str, value: Any, allowed: str, hint: str = "It is damaged, or of 
     except (ParameterError, *_MISTAKES):
         raise
     except Exception as error:
-        reason = getattr(error, "strerror", None)
-        raise ParameterError(name, value, allowed, hint=f"{reason}." if reason else hint) from error
+        words = getattr(error, "strerror", None) or (None if hint else str(error) or type(error).__name__)
+        raise ParameterError(name, value, allowed, hint=f"{words.rstrip('.')}." if words else hint) from error
 
 
 class ConvergenceError(RuntimeError):

@@ -6,6 +6,7 @@ Inside the package everything is SI, and frequencies are angular [rad/s]. One re
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import re
@@ -22,6 +23,9 @@ _DECIMAL_COMMA = re.compile(r"[-+]?[0-9]*,[0-9]+(?:[eE][-+]?[0-9]+)?(?=[^0-9,.]|
 _POWER = re.compile(r"(?<=[^\W\d_])(-?[1-9])(?![0-9.])")  # of the conventions for netCDF: m s-1 is m*s^-1
 _LONGEST = 80
 _COMMON = {("mm", "m"): 1e-3, ("Hz", "rad/s"): 2 * math.pi}  # factors, to the last bit those of the registry
+
+# Units that keep their name where others would become products of kg, m and s; the radian is kept apart from 1.
+_DERIVED = ("", "s", "m", "m/s", "m/s^2", "N", "Pa", "rad/s", "kg", "rad", "N/m", "N m", "W", "V", "N/m^3", "N s/m")
 
 _FAMILIAR = {
     "rad/s": ("Hz", "rad/s", "rpm", "rad/min", "deg/s", "cycle/s"),
@@ -74,6 +78,51 @@ def si_value(value: str, unit: str, *, name: str = "value") -> float:
     if not math.isfinite(converted):
         raise ParameterError(name, value, with_unit(unit))
     return converted
+
+
+def to_si(unit: str) -> tuple[float, str]:
+    """Factor that brings values in a unit into SI, and the SI unit they are in then.
+
+    Parameters
+    ----------
+    unit : str
+        As in ``kN/m^3`` or ``kN m-3``; nothing, "1" and "-" are no unit.
+
+    Returns
+    -------
+    factor : float
+    si : str
+        "1" without a unit. A unit that is not known, or whose zero is not zero (degrees Celsius), stays as it is.
+    """
+    if unit in ("", "-", "1"):
+        return 1.0, "1"
+    if unit in _DERIVED:
+        return 1.0, unit
+    for si in _DERIVED:
+        with contextlib.suppress(ParameterError):
+            return si_value(f"1 {unit}", si), si or "1"
+    plain = _plain(unit)
+    if not is_unit(unit):
+        return 1.0, unit
+    registry = _registry()
+    given = registry.parse_units(plain)
+    factor, root = registry.get_root_units(given)
+    if registry.convert(0.0, given, root) != 0:
+        return 1.0, unit
+    base = registry.get_base_units(given, system="mks")[1]
+    return float(registry.convert(1.0, given, base)), f"{base:~C}".replace("**", "^") or "1"
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of any kind."""
+    plain = _plain(text) if len(text) <= _LONGEST else ""
+    if not _UNIT.fullmatch(plain):
+        return False
+    try:
+        _registry().parse_units(plain)
+    except Exception:  # the registry raises a dozen unrelated types for text that is no unit
+        return False
+    return True
 
 
 def with_unit(unit: str) -> str:

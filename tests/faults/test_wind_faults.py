@@ -86,10 +86,10 @@ def test_bad_records(record, says):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("time,speed\n", "1 to 100000 rows"),
+        ("time,speed\n", "at least one row of numbers"),
         ("time,velocity\n0,1\n1,2\n", "Did you mean|has a column 'velocity'"),
         ("time [s],speed [kg]\n0,1\n1,2\n", "does not measure"),
-        ("time,speed\n0,1\n1,\n", "speed is ''"),
+        ("time,speed\n0,1\n1,\n", "speed: given ''"),
         ("time,speed\n0,1\n1,2,3\n", "cells in every row"),
         ("speed\n1\n2\n", "no column time"),
     ],

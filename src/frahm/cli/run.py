@@ -75,8 +75,12 @@ def show(folder: FolderArgument) -> None:
         return
     from frahm.analysis import load_analysis
     from frahm.cli.results import results_text
+    from frahm.errors import door
 
-    say(results_text(load_analysis(folder)))
+    analysis = load_analysis(folder)
+    with door("DIR", str(folder), "a folder that `frahm run` wrote", "summary.json is damaged."):
+        text = results_text(analysis)
+    say(text)
 
 
 def warmup() -> None:

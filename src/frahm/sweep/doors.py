@@ -12,8 +12,8 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from frahm.case import Case, builtin_names, case_schema, load_case
-from frahm.case.csv_text import beside
 from frahm.case.quantities import Count, Door, Quantity, refusal
+from frahm.case.table_files import beside
 from frahm.errors import ParameterError, nearest
 
 _SPAN = ("from", "to", "count", "spacing")

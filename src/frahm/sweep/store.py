@@ -17,7 +17,7 @@ import numpy as np
 
 from frahm import __version__
 from frahm.case import field_table
-from frahm.errors import ParameterError
+from frahm.errors import ParameterError, door
 from frahm.sweep.batch import Batch
 from frahm.sweep.reasons import Reasons
 from frahm.sweep.study import Axes, Study
@@ -53,8 +53,9 @@ def stored_study(folder: str | Path) -> Study:
     if not is_sweep(folder):
         raise ParameterError("store", str(folder), _ALLOWED)
     try:
-        return load_study(json.loads(_attributes(Path(folder))["study"]))
-    except (ValueError, KeyError) as error:
+        with door("study", "that of the store", "a study"):
+            return load_study(json.loads(_attributes(Path(folder))["study"]))
+    except ParameterError as error:
         hint = f"The study in it cannot be read: {error}."
         raise ParameterError("store", str(folder), _ALLOWED, hint=hint) from None
 
