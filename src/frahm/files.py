@@ -62,7 +62,7 @@ def missing(path: Path) -> str:
     except (OSError, ValueError):
         return f"There is no folder {str(path.parent)!r}."
     near = nearest(path.name, [name for name in names if Path(name).suffix.lower() == path.suffix.lower()] or names)
-    return "No such file." + (f" Did you mean {str(path.with_name(near))!r}?" if near else "")
+    return "There is no such file." + (f" Did you mean {str(path.with_name(near))!r}?" if near else "")
 
 
 def file_text(path: str | os.PathLike[str], allowed: str = "a file that exists", largest: int = _LARGEST_TEXT) -> str:

@@ -106,10 +106,9 @@ def to_si(unit: str) -> tuple[float, str]:
         return 1.0, unit
     registry = _registry()
     given = registry.parse_units(plain)
-    factor, root = registry.get_root_units(given)
-    if registry.convert(0.0, given, root) != 0:
-        return 1.0, unit
     base = registry.get_base_units(given, system="mks")[1]
+    if registry.convert(0.0, given, base) != 0:
+        return 1.0, unit
     return float(registry.convert(1.0, given, base)), f"{base:~C}".replace("**", "^") or "1"
 
 

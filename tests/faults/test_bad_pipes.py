@@ -107,4 +107,4 @@ def test_what_a_table_does_not_hold_is_refused(folder):
     assert frahm.build_system(case).elements[0].direction.tolist() == [-1, 1]
     with pytest.raises(frahm.ParameterError, match="with their stress at every section"):
         frahm.stress_row(case)
-    assert "No such file" in message(folder, text.replace("modes.csv", "none.csv"))
+    assert "There is no such file" in message(folder, text.replace("modes.csv", "none.csv"))

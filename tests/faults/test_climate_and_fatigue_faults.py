@@ -85,7 +85,7 @@ def test_bad_section(tmp_path, sections, says):
 @pytest.mark.parametrize(
     ("table", "says"),
     [
-        (None, r"climate.table: given 'wind.csv'; allowed: rows, or the name of a text.*. wind.csv: No such file"),
+        (None, r"climate.table: given 'wind.csv'; allowed: rows, or the name of .* wind.csv: There is no such file"),
         ("", r"at least one row of numbers"),
         ("speed,probability\n", r"at least one row of numbers"),
         ("sped,probability\n1,1\n", r"wind.csv has a column 'sped'. Did you mean 'speed'"),

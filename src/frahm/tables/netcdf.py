@@ -1,4 +1,4 @@
-"""Time series of a netCDF file as a table: those of a station, or of one place of a grid such as that of a reanalysis."""
+"""Time series of a netCDF file as a table: those of a station, or of one place of the grid of a reanalysis."""
 
 from __future__ import annotations
 

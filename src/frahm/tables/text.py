@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import datetime
 import itertools
@@ -131,16 +132,17 @@ class _Reader:
     def _row(self, number: int, line: str) -> list[float]:
         cells = line.split() if self.delimiter == " " else line.split(self.delimiter)
         # Nearly every line is of this kind: what float takes beyond the numbers allowed is ruled out beforehand.
-        if len(cells) == len(self.heads) and "," not in line.replace(self.delimiter, "") and self.mark != ",":
-            if line.isascii() and "_" not in line and not self.starts:
-                try:
-                    row = list(map(float, cells))
-                except ValueError:
-                    pass
-                else:
-                    self.mark = "." if "." in line else self.mark
-                    return row
+        if len(cells) == len(self.heads) and self._is_plain(line):
+            with contextlib.suppress(ValueError):
+                row = list(map(float, cells))
+                self.mark = "." if "." in line else self.mark
+                return row
         return [self._number(number, i, cell) for i, cell in enumerate(self._of_width(number, line))]
+
+    def _is_plain(self, line: str) -> bool:
+        """Whether float reads the numbers of a line, and nothing it should not."""
+        commas = self.mark == "," or (self.delimiter != "," and "," in line)
+        return not (commas or self.starts or "_" in line) and line.isascii()
 
     def _of_width(self, number: int, line: str) -> list[str]:
         cells, width = self._cells(number, line), len(self.heads)

@@ -20,6 +20,7 @@ from frahm.errors import ParameterError
 
 MOST_BYTES = 500_000_000  # of all arrays in a file together
 _SECONDS = 60.0
+_CHILD = str(Path(__file__).with_name("child.py"))
 _BASE = 2**30  # address space for the interpreter and the libraries themselves [bytes]
 _KINDS = {"mat": "a MAT file of version 5", "netcdf": "a netCDF file"}
 
@@ -49,7 +50,7 @@ def binary_content(kind: str, path: Path, *, most_bytes: int = MOST_BYTES) -> di
     """
     allowed = _KINDS[kind]
     memory = _BASE + 4 * most_bytes
-    command = [sys.executable, "-P", str(Path(__file__).with_name("child.py")), kind, str(path)]
+    command = [sys.executable, "-P", _CHILD, kind, str(path)]
     environment = os.environ | {
         "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
         "PYTHONUTF8": "1",
