@@ -107,6 +107,8 @@ def _read_json(path: Path) -> xr.Dataset:
     layout = check_layout(json.loads(file_text(path)), str(path))
     arrays = {}
     for name, facts in layout["variables"].items():
+        if isinstance(facts["data"], list) != bool(facts["dims"]):
+            raise ValueError(f"the data of {name} do not fit its dimensions")
         values = np.asarray(facts["data"], dtype=object)
         if facts["dtype"].startswith("float"):
             values = np.array([math.nan if v is None else float(v) for v in values.reshape(-1)]).reshape(values.shape)
