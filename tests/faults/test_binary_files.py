@@ -66,7 +66,7 @@ def bomb(size):
 def test_a_small_file_cannot_take_much_memory(tmp_path):
     one = zlib.compress(b"\0" * 2**26, 9)  # a block of 64 MB, repeated: 6 GB of 6 MB
     header = mat_bytes(compressed=True)[:128]
-    element = int(15).to_bytes(4, "little") + len(one).to_bytes(4, "little") + one
+    element = (15).to_bytes(4, "little") + len(one).to_bytes(4, "little") + one
     (tmp_path / "bomb.mat").write_bytes(header + element * 96)
     code = (
         "import frahm, resource, sys\n"
@@ -93,7 +93,7 @@ def test_memory_is_bounded_where_no_size_is_declared(tmp_path):
     pytest.importorskip("resource")
     path = tmp_path / "many.mat"
     path.write_bytes(bomb(60_000_000))
-    with pytest.raises(frahm.ParameterError, match="larger than 10 MB|more memory"):
+    with pytest.raises(frahm.ParameterError, match=r"larger than 10 MB|more memory"):
         binary_content("mat", path, most_bytes=10_000_000)
 
 

@@ -38,7 +38,7 @@ def is_sweep(folder: str | Path) -> bool:
     """Whether a folder holds the store of a sweep."""
     try:
         return _attributes(Path(folder)).get("schema") == SCHEMA
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return False
 
 

@@ -131,7 +131,7 @@ def _speed(columns: Mapping[str, xr.DataArray]) -> dict[str, xr.DataArray]:
     east, north = parts
     if east.attrs.get("units") != north.attrs.get("units"):
         return {}
-    speed = np.hypot(east, north)
+    speed = east.copy(data=np.hypot(east.values, north.values))
     speed.attrs = {
         "units": east.attrs.get("units", ""),
         "long_name": f"speed of the wind from {east.name}, {north.name}",
