@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
+from frahm.lazy import submodules
+
 __version__ = "0.1.0"
 
 # Public name -> room. Rooms are imported on first use, so that `import frahm` and `frahm --help` stay quick.
@@ -75,12 +77,13 @@ _PUBLIC = {
 
 __all__ = ["__version__", *_PUBLIC]
 
+_room = submodules(__name__)
+
 
 def __getattr__(name: str) -> Any:
-    try:
-        room = _PUBLIC[name]
-    except KeyError:
-        raise AttributeError(f"module 'frahm' has no attribute {name!r}") from None
+    room = _PUBLIC.get(name)
+    if room is None:
+        return _room(name)
     module = importlib.import_module(room)
     # A room that is called like its verb can itself be called: `import frahm.sweep` leaves that very attribute.
     value = module if room == f"{__name__}.{name}" else getattr(module, name)

@@ -2,11 +2,41 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import enum
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
+
+_LONGEST = {"name": 120, "value": 240, "allowed": 1500, "where": 400, "hint": 800}  # characters in a message
+# Wrong types and sizes are what a damaged or foreign file leads to; these four are only ever mistakes of the program.
+_MISTAKES = (AssertionError, ImportError, NameError, NotImplementedError)
+
+
+def printable(text: str, longest: int | None = 2000) -> str:
+    r"""Text as one line that is safe on a terminal: no control characters, no overrides of direction, not too long.
+
+    What cannot be printed stands as an escape, such as ``\x1b``; of a text that is too long the middle is left out.
+    """
+    if longest is not None and len(text) > longest:
+        half = (longest - 3) // 2
+        text = f"{text[:half]}...{text[len(text) - half :]}"
+    return text if text.isprintable() else "".join(c if c.isprintable() else _escape(c) for c in text)
+
+
+def shown(value: Any) -> str:
+    """What was given, as it is written in a message, whatever it is."""
+    try:
+        text = repr(value)
+    except Exception:  # of any object: numbers of thousands of digits, lists a thousand deep, what users wrote
+        return f"something of type {printable(type(value).__name__, 60)} that cannot be shown"
+    longest = _LONGEST["value"]
+    return printable(text if len(text) <= longest else text[: longest - 3] + "...")
+
+
+def _escape(letter: str) -> str:
+    return letter.encode("unicode_escape").decode("ascii")
 
 
 class ParameterError(ValueError):
@@ -24,15 +54,51 @@ class ParameterError(ValueError):
         File, or file and line, the value came from.
     hint : str, optional
         Nearest valid name or another way out.
+    also : sequence of str
+        Further sentences, each on a line of its own.
     """
 
-    def __init__(self, name: str, value: Any, allowed: str, *, where: str | None = None, hint: str | None = None):
+    def __init__(
+        self, name: str, value: Any, allowed: str, *,
+        where: str | None = None, hint: str | None = None, also: Sequence[str] = (),
+    ):  # fmt: skip
         self.name, self.value, self.allowed, self.where, self.hint = name, value, allowed, where, hint
-        given = repr(value)
-        given = given if len(given) <= 240 else given[:237] + "..."
-        message = f"{name}: given {given}; allowed: {allowed}"
-        message = f"{where}: {message}" if where else message
-        super().__init__(f"{message}. {hint}" if hint else message)
+        self.also = tuple(also)
+        # A message quotes files and names that anybody may have written: it is made fit to print here, and only here.
+        part = {key: printable(str(text), _LONGEST[key]) for key, text in
+                (("name", name), ("allowed", allowed), ("where", where or ""), ("hint", hint or ""))}  # fmt: skip
+        place = f"{part['where']}: " if where else ""
+        message = f"{place}{part['name']}: given {shown(value)}; allowed: {part['allowed']}"
+        message = f"{message}. {part['hint']}" if hint else message
+        super().__init__("\n".join([message, *map(printable, self.also)]))
+
+
+@contextlib.contextmanager
+def door(name: str, value: Any, allowed: str, hint: str | None = None) -> Iterator[None]:
+    """Guard a block that takes apart what a file or a foreign object holds: what that leads to is a `ParameterError`.
+
+    The block should do nothing else. Names that do not exist, failed assertions and the like are mistakes of the
+    program, not of the file, and stay what they are.
+
+    Parameters
+    ----------
+    name, value, allowed : str, object, str
+        See `ParameterError`.
+    hint : str
+        What is wrong, probably; by default the words of the cause.
+
+    Raises
+    ------
+    ParameterError
+        If the block raises; the cause is kept.
+    """
+    try:
+        yield
+    except (ParameterError, *_MISTAKES):
+        raise
+    except Exception as error:
+        words = getattr(error, "strerror", None) or (None if hint else str(error) or type(error).__name__)
+        raise ParameterError(name, value, allowed, hint=f"{words.rstrip('.')}." if words else hint) from error
 
 
 class ConvergenceError(RuntimeError):
@@ -60,7 +126,7 @@ class Outcome(enum.Enum):
 
 def nearest(name: str, choices: Iterable[str]) -> str | None:
     """Valid name most like `name`, or None."""
-    found = difflib.get_close_matches(name, list(choices), n=1, cutoff=0.6)
+    found = difflib.get_close_matches(name, list(choices), n=1, cutoff=0.6) if len(name) <= _LONGEST["name"] else []
     return found[0] if found else None
 
 

@@ -1,12 +1,93 @@
-"""Files that appear complete or not at all."""
+"""Files that are there to be read, and files that appear complete or not at all."""
 
 from __future__ import annotations
 
 import contextlib
+import json
+import os
 import secrets
+import stat
 from pathlib import Path
+from typing import Any
 
-from frahm.errors import ParameterError
+from frahm.errors import ParameterError, nearest
+
+_LARGEST_TEXT = 500_000_000  # bytes
+_MOST_NEIGHBOURS = 2000
+
+
+def existing_file(path: str | os.PathLike[str], allowed: str = "a file that exists", *, largest: int) -> Path:
+    """Path of a regular file that is not too large; nothing is opened, so a pipe or a device cannot hang.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file.
+    allowed : str
+        What may be given, as the end of the sentence "allowed: ...".
+    largest : int
+        Size of the file [bytes].
+
+    Raises
+    ------
+    ParameterError
+        If there is no such file, with the name of the one beside it that was probably meant; if it is no regular
+        file, or too large.
+    """
+    found = Path(path)
+    try:
+        status = found.stat()
+        if not stat.S_ISREG(status.st_mode):
+            kind = "a folder" if stat.S_ISDIR(status.st_mode) else "no regular file"
+            raise ParameterError("file", str(path), allowed, hint=f"It is {kind}.")
+        if status.st_size > largest:
+            size = f"{largest / 1e6:.3g} MB" if largest >= 1_000_000 else f"{largest / 1e3:.3g} kB"
+            raise ParameterError("file", str(path), f"a file of at most {size}")
+    except FileNotFoundError:
+        raise ParameterError("file", str(path), allowed, hint=missing(found)) from None
+    except OSError as error:
+        raise ParameterError("file", str(path), allowed, hint=f"{error.strerror or error}.") from None
+    except ValueError as error:
+        if isinstance(error, ParameterError):
+            raise
+        raise ParameterError("file", str(path), allowed, hint=f"{error}.") from None
+    return found
+
+
+def missing(path: Path) -> str:
+    """Say that a file is not there, and which one beside it was probably meant."""
+    try:
+        names = [entry.name for entry, _ in zip(os.scandir(path.parent), range(_MOST_NEIGHBOURS), strict=False)]
+    except (OSError, ValueError):
+        return f"There is no folder {str(path.parent)!r}."
+    near = nearest(path.name, [name for name in names if Path(name).suffix.lower() == path.suffix.lower()] or names)
+    return "There is no such file." + (f" Did you mean {str(path.with_name(near))!r}?" if near else "")
+
+
+def file_text(path: str | os.PathLike[str], allowed: str = "a file that exists", largest: int = _LARGEST_TEXT) -> str:
+    """Text of a regular UTF-8 file.
+
+    Raises
+    ------
+    ParameterError
+        As `existing_file`, or if the file is not text in UTF-8.
+    """
+    found = existing_file(path, allowed, largest=largest)
+    try:
+        return found.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        raise ParameterError("file", str(path), allowed, hint=f"{error.strerror or error}.") from None
+    except UnicodeDecodeError:
+        raise ParameterError("file", str(path), allowed, hint="It is not text in UTF-8.") from None
+
+
+def json_or_nothing(path: str | os.PathLike[str]) -> Any:
+    """Plain data of a JSON file; None if there is no such file or it holds no JSON."""
+    try:
+        return json.loads(file_text(path))
+    except (ParameterError, ValueError, RecursionError):
+        return None
+
 
 _ALLOWED = "a file in a directory that can be written"
 

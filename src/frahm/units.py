@@ -6,6 +6,7 @@ Inside the package everything is SI, and frequencies are angular [rad/s]. One re
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import math
 import re
@@ -18,8 +19,13 @@ _QUANTITY = re.compile(rf"({_NUMBER})(.*)", re.DOTALL)
 _TERM = r"\(*(?:1|%|[^\W\d]+°?(?:(?:\^|\*\*)-?[1-9]|[²³⁴])?)\)*"
 # Only names, products, quotients and one-digit powers reach the parser of the registry: it would evaluate 9**9**9.
 _UNIT = re.compile(rf"{_TERM}(?:[*/· ]{_TERM})*")
+_DECIMAL_COMMA = re.compile(r"[-+]?[0-9]*,[0-9]+(?:[eE][-+]?[0-9]+)?(?=[^0-9,.]|$)")
+_POWER = re.compile(r"(?<=[^\W\d_])(-?[1-9])(?![0-9.])")  # of the conventions for netCDF: m s-1 is m*s^-1
 _LONGEST = 80
 _COMMON = {("mm", "m"): 1e-3, ("Hz", "rad/s"): 2 * math.pi}  # factors, to the last bit those of the registry
+
+# Units that keep their name where others would become products of kg, m and s; the radian is kept apart from 1.
+_DERIVED = ("", "s", "m", "m/s", "m/s^2", "N", "Pa", "rad/s", "kg", "rad", "N/m", "N m", "W", "V", "N/m^3", "N s/m")
 
 _FAMILIAR = {
     "rad/s": ("Hz", "rad/s", "rpm", "rad/min", "deg/s", "cycle/s"),
@@ -59,6 +65,10 @@ def si_value(value: str, unit: str, *, name: str = "value") -> float:
     ParameterError
         If the text is not a number with a unit, the unit is unknown, or it measures something else. A frequency
         in ``1/s`` is refused, because it does not say whether turns or radians are counted.
+
+    Notes
+    -----
+    Units are written as in ``kN/m^3``, or with powers as in ``N m-3`` (UDUNITS, which netCDF files use).
     """
     number, unit_text = _split(value, unit, name)
     if not unit_text:
@@ -70,6 +80,50 @@ def si_value(value: str, unit: str, *, name: str = "value") -> float:
     return converted
 
 
+def to_si(unit: str) -> tuple[float, str]:
+    """Factor that brings values in a unit into SI, and the SI unit they are in then.
+
+    Parameters
+    ----------
+    unit : str
+        As in ``kN/m^3`` or ``kN m-3``; nothing, "1" and "-" are no unit.
+
+    Returns
+    -------
+    factor : float
+    si : str
+        "1" without a unit. A unit that is not known, or whose zero is not zero (degrees Celsius), stays as it is.
+    """
+    if unit in ("", "-", "1"):
+        return 1.0, "1"
+    if unit in _DERIVED:
+        return 1.0, unit
+    for si in _DERIVED:
+        with contextlib.suppress(ParameterError):
+            return si_value(f"1 {unit}", si), si or "1"
+    plain = _plain(unit)
+    if not is_unit(unit):
+        return 1.0, unit
+    registry = _registry()
+    given = registry.parse_units(plain)
+    base = registry.get_base_units(given, system="mks")[1]
+    if registry.convert(0.0, given, base) != 0:
+        return 1.0, unit
+    return float(registry.convert(1.0, given, base)), f"{base:~C}".replace("**", "^") or "1"
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of any kind."""
+    plain = _plain(text) if len(text) <= _LONGEST else ""
+    if not _UNIT.fullmatch(plain):
+        return False
+    try:
+        _registry().parse_units(plain)
+    except Exception:  # the registry raises a dozen unrelated types for text that is no unit
+        return False
+    return True
+
+
 def with_unit(unit: str) -> str:
     """Say what a field of the SI unit accepts, as the end of the sentence "allowed: ..."."""
     known = _FAMILIAR.get(unit, (unit,))
@@ -79,9 +133,19 @@ def with_unit(unit: str) -> str:
 def _split(value: Any, unit: str, name: str) -> tuple[float, str]:
     text = " ".join(str(value).replace("\N{MINUS SIGN}", "-").split()) if len(value) <= _LONGEST else ""
     found = _QUANTITY.fullmatch(text)
+    comma = _DECIMAL_COMMA.match(text)
+    if comma:
+        hint = f"Write a point as decimal sign: {text.replace(',', '.', 1)!r}."
+        raise ParameterError(name, value, with_unit(unit), hint=hint)
     if found is None:
         raise ParameterError(name, value, with_unit(unit))
-    return float(found[1]), re.sub(r" ?(\*\*|[*/·^()]) ?", r"\1", found[2].strip())
+    return float(found[1]), _plain(found[2])
+
+
+def _plain(unit_text: str) -> str:
+    """A unit without needless blanks and with signs for its powers and products."""
+    text = re.sub(r" ?(\*\*|[*/·^()]) ?", r"\1", unit_text.strip())
+    return re.sub(r"(?<=\w)\.(?=[^\W\d])", "*", _POWER.sub(r"^\1", text))
 
 
 def _convert(number: float, unit_text: str, unit: str, name: str, value: str) -> float:
@@ -108,7 +172,7 @@ def _by_registry(number: float, unit_text: str, unit: str, name: str, value: str
         near = {unit.lower(): unit for unit in known}.get(unit_text.lower()) or nearest(unit_text, known)
         hint = f"Unknown unit {unit_text!r}." + (f" Did you mean {near!r}?" if near else "")
         raise ParameterError(name, value, with_unit(unit), hint=hint) from None
-    measure = "turns or radians per second" if unit_text == "1/s" and unit == "rad/s" else f"[{unit or '-'}]"
+    measure = "turns or radians per second" if unit_text in ("1/s", "s^-1") and unit == "rad/s" else f"[{unit or '-'}]"
     raise ParameterError(name, value, with_unit(unit), hint=f"{unit_text!r} does not measure {measure}.")
 
 

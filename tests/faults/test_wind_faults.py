@@ -74,7 +74,7 @@ def test_bad_windows(window):
         (([0.0, float("nan")], [2.7, 2.7]), "record.time"),
         (([0.0, 1.0], ["fast", 2.7]), "record.speed"),
         (5.0, "a WindRecord, a CSV file, or a pair"),
-        ("no-such-file.csv", "No such file"),
+        ("no-such-file.csv", "There is no such file"),
         (None, "wind.record or wind.turbulence"),
     ],
 )
@@ -86,10 +86,10 @@ def test_bad_records(record, says):
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("time,speed\n", "1 to 100000 rows"),
+        ("time,speed\n", "at least one row of numbers"),
         ("time,velocity\n0,1\n1,2\n", "Did you mean|has a column 'velocity'"),
         ("time [s],speed [kg]\n0,1\n1,2\n", "does not measure"),
-        ("time,speed\n0,1\n1,\n", "speed is ''"),
+        ("time,speed\n0,1\n1,\n", "speed: given ''"),
         ("time,speed\n0,1\n1,2,3\n", "cells in every row"),
         ("speed\n1\n2\n", "no column time"),
     ],
@@ -135,7 +135,7 @@ def test_bad_settings_of_the_unsteady_response(more, says):
         ({"record": [[0, 1], [1, -1]]}, "Entry 1"),
         ({"record": [[0, 1], [0, 1]]}, "does not ascend"),
         ({"record": [[t, 2.7] for t in range(5001)]}, "A longer record goes to"),
-        ({"record": "nowhere.csv"}, "No such file"),
+        ({"record": "nowhere.csv"}, "There is no such file"),
     ],
 )
 def test_bad_unsteady_wind_of_a_case(wind, says):

@@ -3,6 +3,9 @@
 import dataclasses
 import inspect
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -60,3 +63,45 @@ def test_a_class_describes_its_fields_and_methods(name):
     for member, value in own:
         if inspect.isfunction(value) or isinstance(value, property | classmethod | staticmethod):
             assert inspect.getdoc(getattr(kind, member)), member
+
+
+ROOT = Path(__file__).resolve().parents[2]
+_NAME = re.compile(r"`(frahm(?:\.[A-Za-z_]\w*)+)")
+_ASK = """
+import importlib, sys
+for path in sys.argv[1:]:
+    for module in [name for name in sys.modules if name == "frahm" or name.startswith("frahm.")]:
+        del sys.modules[module]
+    thing, *names = importlib.import_module("frahm"), *path.split(".")[1:]
+    for name in names:
+        thing = getattr(thing, name)
+"""
+
+
+def documented():
+    """Names in the pages and in the script of README, by their path."""
+    texts = [page.read_text(encoding="utf-8") for page in [*ROOT.glob("docs/*.md"), ROOT / "README.md"]]
+    return sorted({name for text in texts for name in _NAME.findall(text)})
+
+
+def test_every_documented_name_is_reachable_after_import_frahm_alone():
+    names = documented()
+    assert {"frahm.absorbers.sag", "frahm.design.pareto_front", "frahm.slow_flow.derivation"} <= set(names)
+    rooms = [name for name in names if name.count(".") > 1]  # the others are those of the test above
+    done = subprocess.run([sys.executable, "-c", _ASK, *rooms], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    public = {name.split(".")[1] for name in names if name.count(".") == 1}
+    assert [name for name in sorted(public) if not hasattr(frahm, name)] == []
+
+
+def test_a_name_that_does_not_exist_is_none():
+    for thing in (frahm, frahm.slow_flow, frahm.plotting):
+        with pytest.raises(AttributeError, match="no_such_name"):
+            thing.no_such_name  # noqa: B018
+
+
+def test_import_frahm_is_quick():
+    code = "import time; start = time.perf_counter(); import frahm; print(time.perf_counter() - start)"
+    run = [sys.executable, "-c", code]
+    seconds = min(float(subprocess.run(run, capture_output=True, check=True).stdout) for _ in range(3))
+    assert seconds < 0.3

@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING, Any
 from frahm.analysis.analysis import SCHEMA, Analysis
 from frahm.analysis.section import Check
 from frahm.case import load_case
-from frahm.errors import ParameterError
-from frahm.files import remove_file, write_bytes, write_text
+from frahm.errors import ParameterError, door
+from frahm.files import existing_file, file_text, remove_file, write_bytes, write_text
+from frahm.tables.netcdf import netcdf_dataset
+from frahm.untrusted import MOST_BYTES
 
 if TYPE_CHECKING:
     import xarray as xr
 
 CASE_FILE, SUMMARY_FILE, ARRAYS_FILE = "case.yaml", "summary.json", "results.nc"
 _KINDS_COMPRESSED = "fiu"
+_ALLOWED = f"a folder that `frahm run` wrote, with {SUMMARY_FILE} in it"
 
 
 def save_analysis(analysis: Analysis, folder: str | Path) -> list[Path]:
@@ -51,33 +54,34 @@ def load_analysis(folder: str | Path) -> Analysis:
     """
     folder = Path(folder)
     summary = read_summary(folder)
-    results = summary["results"]
-    notes, interrupted = results.pop("notes"), results.pop("interrupted")
-    return Analysis(
-        case=load_case(summary["case"]),
-        results=results,
-        data=_read_arrays(folder / ARRAYS_FILE),
-        checks=tuple(Check(**check) for check in summary["checks"]),
-        unverified=tuple(summary["unverified"]),
-        notes=tuple(notes),
-        interrupted=interrupted,
-        version=summary["frahm"],
-    )
+    data = _read_arrays(folder / ARRAYS_FILE)
+    with door("DIR", str(folder), _ALLOWED, f"{SUMMARY_FILE} is damaged."):
+        results = summary["results"]
+        notes, interrupted = results.pop("notes"), results.pop("interrupted")
+        return Analysis(
+            case=load_case(summary["case"]),
+            results=results,
+            data=data,
+            checks=tuple(Check(**check) for check in summary["checks"]),
+            unverified=tuple(map(str, summary["unverified"])),
+            notes=tuple(map(str, notes)),
+            interrupted=bool(interrupted),
+            version=str(summary["frahm"]),
+        )
 
 
 def read_summary(folder: str | Path) -> dict[str, Any]:
     """The summary of an analysis as plain data."""
     path = Path(folder) / SUMMARY_FILE
-    allowed = f"a folder that `frahm run` wrote, with {SUMMARY_FILE} in it"
     try:
-        summary = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ParameterError("DIR", str(folder), allowed, hint=f"{path}: {error.strerror}.") from None
-    except ValueError:
-        raise ParameterError("DIR", str(folder), allowed, hint=f"{path} is not valid JSON.") from None
+        summary = json.loads(file_text(path))
+    except ParameterError as error:
+        raise ParameterError("DIR", str(folder), _ALLOWED, hint=f"{path}: {error.hint}") from None
+    except (ValueError, RecursionError):
+        raise ParameterError("DIR", str(folder), _ALLOWED, hint=f"{path} is not valid JSON.") from None
     known = {"schema", "frahm", "case", "results", "checks", "unverified"}
     if not isinstance(summary, dict) or summary.get("schema") != SCHEMA or not known <= set(summary):
-        raise ParameterError("DIR", str(folder), allowed, hint=f"{path} is not a summary of this version.")
+        raise ParameterError("DIR", str(folder), _ALLOWED, hint=f"{path} is not a summary of this version.")
     return summary
 
 
@@ -125,11 +129,10 @@ def _packed_arrays(analysis: Analysis) -> bytes | memoryview:
 
 
 def _read_arrays(path: Path) -> dict[str, xr.Dataset]:
-    import xarray as xr
-
+    allowed = f"a folder with {path.name} in it"
     try:
-        with xr.open_dataset(path, engine="h5netcdf") as opened:
-            return separated(opened.load())
-    except (OSError, KeyError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or "It is damaged or not a results file"
-        raise ParameterError("DIR", str(path.parent), f"a folder with {path.name} in it", hint=f"{reason}.") from None
+        whole = netcdf_dataset(existing_file(path, largest=MOST_BYTES))
+    except ParameterError as error:
+        raise ParameterError("DIR", str(path.parent), allowed, hint=error.hint) from None
+    with door("DIR", str(path.parent), allowed, "It is damaged or not a results file."):
+        return separated(whole)

@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 from pydantic import Field, field_validator, model_validator
 
-from frahm.case.csv_text import Column, csv_rows
 from frahm.case.quantities import Quantity, refusal
 from frahm.case.section import Section
+from frahm.case.table_files import Column, table_rows
 
 DAY = 86_400.0  # [s]
 YEAR = 365.25 * DAY  # [s]
@@ -87,7 +87,7 @@ class Climate(Section):
     def _from_file(cls, value: Any) -> Any:
         if value is None:
             return ()
-        return csv_rows(value, _COLUMNS) if isinstance(value, str) else value
+        return table_rows(value, _COLUMNS) if isinstance(value, str) else value
 
     @field_validator("table", mode="after")
     @classmethod

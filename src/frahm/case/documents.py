@@ -11,6 +11,7 @@ from typing import Any
 from frahm.case.toml_text import read_toml
 from frahm.case.yaml_text import TextError, read_yaml
 from frahm.errors import ParameterError, nearest
+from frahm.files import missing
 
 LARGEST = 256 * 1024
 READERS: dict[str, Callable[[str], tuple[Any, dict[str, int]]]] = {
@@ -95,8 +96,6 @@ def _sentence(error: TextError) -> str:
 
 
 def _no_such_file(source: str, what: str, sources: str, known: Sequence[str]) -> ParameterError:
-    near = nearest(Path(source).stem, known)
-    hint = f"Did you mean {near!r}?" if near else None
-    if near is None and Path(source).suffix:
-        hint = "There is no such file."
-    return ParameterError(what, source, sources, hint=hint)
+    near, beside = nearest(Path(source).stem, known), missing(Path(source))
+    meant = "Did you mean" in beside or not near
+    return ParameterError(what, source, sources, hint=beside if meant else f"Did you mean {near!r}?")

@@ -12,9 +12,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from frahm.case.case import Case
-from frahm.case.csv_text import files_beside
 from frahm.case.documents import LARGEST, READERS, check_mapping, document_data, document_text, place
 from frahm.case.problems import parameter_error
+from frahm.case.table_files import files_beside
 from frahm.case.yaml_text import read_yaml, yaml_text
 from frahm.errors import ParameterError, check_choice
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from frahm.case.csv_text import Column, csv_names, csv_rows
 from frahm.case.quantities import refusal
+from frahm.case.table_files import Column, table_names, table_rows
 
 _PLAIN = (Column("mass", "kg"), Column("frequency", "rad/s", say_unit=True), Column("damping_ratio", ""),
           Column("lift_length", "m"))  # fmt: skip
@@ -19,7 +19,9 @@ def read_modes(name: str) -> dict[str, Any]:
     Its first line names the columns: mass, frequency [Hz] or [rad/s], damping_ratio, lift_length, "displacement at
     31.2" for every section [m] and, if stresses are known, "stress at 31.2"; units may follow in brackets.
     """
-    at = {title: (found[1], _position(title, found[2])) for title in csv_names(name) if (found := _AT.fullmatch(title))}
+    at = {
+        title: (found[1], _position(title, found[2])) for title in table_names(name) if (found := _AT.fullmatch(title))
+    }
     sections = [where for what, where in at.values() if what == "displacement"]
     stresses = {where: title for title, (what, where) in at.items() if what == "stress"}
     if not sections or (stresses and set(stresses) != set(sections)):
@@ -28,7 +30,7 @@ def read_modes(name: str) -> dict[str, Any]:
     shapes = {where: title for title, (what, where) in at.items() if what == "displacement"}
     columns = [Column(title, "Pa/m" if title in stresses.values() else "") for title in at]
     modes = []
-    for row in csv_rows(name, [*_PLAIN, *columns]):
+    for row in table_rows(name, [*_PLAIN, *columns]):
         mode: dict[str, Any] = {column.name: row[column.name] for column in _PLAIN}
         mode["displacements"] = [row[shapes[where]] for where in sections]
         modes.append(mode | ({"stresses": [row[stresses[where]] for where in sections]} if stresses else {}))

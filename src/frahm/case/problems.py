@@ -12,6 +12,7 @@ from frahm.case.fields import FieldFacts, children, field_table, kinds
 from frahm.errors import ParameterError, nearest
 
 _SHOWN = 5
+_COMPARED = 100  # unknown names that are compared with those of the fields
 Where = Callable[[str], str | None]
 
 
@@ -21,7 +22,7 @@ class _Nothing:
 
 
 def parameter_error(error: ValidationError, model: type[BaseModel], where: Where | None = None) -> ParameterError:
-    """Return the first problem as a `ParameterError`; further ones follow in its hint, a line each.
+    """Return the first problem as a `ParameterError`; further ones follow, a line each.
 
     Parameters
     ----------
@@ -39,16 +40,15 @@ def parameter_error(error: ValidationError, model: type[BaseModel], where: Where
     """
     found = error.errors(include_url=False)
     unknown = [entry for entry in found if entry["type"] == "extra_forbidden"]
-    meant = {_key([*entry["loc"][:-1], near], model) for entry in unknown if (near := _near(entry["loc"], model))}
-    rest = [entry for entry in found if entry not in unknown and _key(entry["loc"], model) not in meant]
-    problems = [_problem(entry, model, where) for entry in [*unknown, *rest]]
-    first, others = problems[0], problems[1:]
-    if not others:
-        return first
-    more = [f"Also: {other}" for other in others[:_SHOWN]]
-    more += [f"And {len(others) - _SHOWN} more."] if len(others) > _SHOWN else []
-    hint = "\n".join([*([first.hint] if first.hint else []), *more])
-    return ParameterError(first.name, first.value, first.allowed, where=first.where, hint=hint)
+    rest = [entry for entry in found if entry["type"] != "extra_forbidden"]
+    if rest:  # a misspelt name is not reported as missing, too
+        meant = {_key([*e["loc"][:-1], near], model) for e in unknown[:_COMPARED] if (near := _near(e["loc"], model))}
+        rest = [entry for entry in rest if _key(entry["loc"], model) not in meant]
+    chosen = [*unknown, *rest]
+    first, *others = (_problem(entry, model, where) for entry in chosen[: 1 + _SHOWN])
+    also = [*first.also, *(f"Also: {str(other).splitlines()[0]}" for other in others)]
+    also += [f"And {len(chosen) - 1 - _SHOWN} more."] if len(chosen) > 1 + _SHOWN else []
+    return ParameterError(first.name, first.value, first.allowed, where=first.where, hint=first.hint, also=also)
 
 
 def field_path(loc: Sequence[int | str], model: type[BaseModel]) -> str:
@@ -88,10 +88,11 @@ def _siblings(loc: Sequence[int | str], model: type[BaseModel]) -> list[str]:
 
 def _problem(entry: Mapping[str, Any], model: type[BaseModel], where: Where | None) -> ParameterError:
     loc, context = entry["loc"], entry.get("ctx", {})
-    path, value, hint = field_path(loc, model), entry.get("input"), None
+    path, value, hint, also = field_path(loc, model), entry.get("input"), None, ()
     facts = _facts_at(loc, model)
     if entry["type"] == "parameter":
         path, allowed, hint = context["path"] or path, context["allowed"], context["hint"]
+        also = context["also"]
         value = context["given"] if context["path"] else value
     elif entry["type"] == "extra_forbidden":
         near = _near(loc, model)
@@ -103,7 +104,7 @@ def _problem(entry: Mapping[str, Any], model: type[BaseModel], where: Where | No
         return _wrong_kind(path, value, list(kinds(model).get(_key(loc, model), {})), where)
     else:
         allowed = facts.allowed if facts else entry["msg"]
-    return ParameterError(path or "case", value, allowed, where=where(path) if where else None, hint=hint)
+    return ParameterError(path or "case", value, allowed, where=where(path) if where else None, hint=hint, also=also)
 
 
 def _wrong_kind(path: str, value: Any, known: list[str], where: Where | None) -> ParameterError:

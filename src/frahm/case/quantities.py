@@ -4,25 +4,29 @@ from __future__ import annotations
 
 import math
 import unicodedata
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from frahm.errors import ParameterError, check_count, check_number, nearest
+from frahm.errors import ParameterError, check_count, check_number, nearest, printable
 from frahm.units import si_value, with_unit
 
 _HIGHEST_POWER = 15
 _SMALLEST, _LARGEST = 1e-30, 1e30  # in SI units: products of a few such numbers neither overflow nor vanish
 _NOT_IN_A_LINE = ("Cc", "Cs", "Zl", "Zp")  # control characters, halves of a pair, line and paragraph separators
+_TURNING = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")  # what changes the direction of the text
 
 
 def refusal(
-    allowed: str, *, hint: str | None = None, path: str | None = None, value: Any = None
+    allowed: str, *, hint: str | None = None, path: str | None = None, value: Any = None, also: Sequence[str] = ()
 ) -> PydanticCustomError:
     """Return the error a validator raises; `path` and `value` name another field than the one validated."""
-    context = {"allowed": allowed, "hint": hint, "path": path, "given": value}
+    # Half a character of a file that is quoted would stop the library that carries the error.
+    hint = hint and printable(hint)
+    context = {"allowed": printable(allowed), "hint": hint, "path": path, "given": value, "also": also}
     return PydanticCustomError("parameter", "{allowed}", context)
 
 
@@ -232,7 +236,10 @@ class Label(Door):
     def read(self, value: Any) -> str:
         """Text without blanks around it."""
         text = value.strip() if isinstance(value, str) else ""
-        broken = any(unicodedata.category(letter) in _NOT_IN_A_LINE for letter in text)
+        broken = any(
+            unicodedata.category(letter) in _NOT_IN_A_LINE or unicodedata.bidirectional(letter) in _TURNING
+            for letter in text
+        )
         if not isinstance(value, str) or broken or not self.shortest <= len(text) <= self.longest:
             number = isinstance(value, int | float) and not isinstance(value, bool)
             raise refusal(self.allowed, hint=f'Put it in quotes: "{value}".' if number else None)

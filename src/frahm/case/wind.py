@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from frahm.case.csv_text import Column, csv_rows
 from frahm.case.quantities import Choice, Door, Quantity, Range, refusal
 from frahm.case.reynolds import LIFT, LIFT_CURVES, STROUHAL, STROUHAL_CURVES, Coefficient, reynolds_range
 from frahm.case.section import Section
+from frahm.case.table_files import Column, table_rows
 
 SPECTRA = ("kaimal", "en1991", "von-karman")
 RECORD_COLUMNS = (Column("time", "s"), Column("speed", "m/s"))
@@ -53,7 +53,7 @@ class Record(Door):
         if value is None or value in ((), []):
             return ()
         if isinstance(value, str):
-            value = [(row["time"], row["speed"]) for row in csv_rows(value, RECORD_COLUMNS)]
+            value = [(row["time"], row["speed"]) for row in table_rows(value, RECORD_COLUMNS)]
         if not isinstance(value, list | tuple) or not 2 <= len(value) <= _MOST_SAMPLES:
             hint = "A longer record goes to frahm.unsteady_response(case, record=...)." if value else None
             raise refusal(self.allowed, hint=hint)

@@ -83,6 +83,7 @@ def read_yaml(text: str) -> tuple[Any, dict[str, int]]:
         If the text is no YAML, or holds duplicate names, tags that build objects, or aliases that expand too far.
     """
     yaml = _yaml()
+    yaml.composer.warn_double_anchors = False  # a later anchor replaces one of the same name, as YAML 1.2 has it
     reader = _Reader(yaml)
     try:
         root = yaml.compose(text)

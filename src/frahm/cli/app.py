@@ -13,6 +13,7 @@ from frahm.cli.guarded import GuardedGroup, told_if_full
 from frahm.cli.page import page
 from frahm.cli.reproduce import reproduce
 from frahm.cli.sweep import sweep
+from frahm.cli.terminal import printable_streams
 
 app = typer.Typer(
     name="frahm",
@@ -58,6 +59,7 @@ def _root(
 
 
 def main() -> None:
-    """Run the command line."""
+    """Run the command line. A mistake of the program itself ends with its traceback and exit code 1."""
+    printable_streams()
     with told_if_full():
         app()

@@ -123,21 +123,26 @@ def _conclude(study: DesignStudy, folder: Path) -> None:
 
 def stored_design_text(folder: Path) -> str | None:
     """What `frahm design` left in a folder, as text; None if the folder holds something else."""
-    import json
+    from frahm.cli.folder import holds_design
+    from frahm.errors import door
+    from frahm.files import json_or_nothing
 
-    try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        if summary["schema"] != "frahm-design-1":
-            return None
-        found = summary["results"]["design"]
-    except (OSError, ValueError, KeyError, TypeError):
+    if not holds_design(folder):
         return None
-    rows = [
-        f"  {row['name']:<18} {row['worst_pipe_peak']:.5g} m, {'verified' if row['verified'] else 'unverified'}"
-        for row in found["comparison"]
-    ]
-    lines = [f"{summary['case']['name']}: design of the family {found['family']}", "", found["verdict"]]
-    lines += ["", "Worst pipe peak of every device", *rows]
-    if summary["unverified"]:
-        lines += ["", "Unverified", *(f"  {sentence}" for sentence in summary["unverified"])]
-    return "\n".join(lines)
+    with door("DIR", str(folder), "a folder that `frahm design` wrote", "summary.json is damaged."):
+        summary = json_or_nothing(folder / "summary.json")
+        found = summary["results"]["design"]
+        rows = [
+            f"  {row['name']:<18} {_metres(row['worst_pipe_peak'])}, {'verified' if row['verified'] else 'unverified'}"
+            for row in found["comparison"]
+        ]
+        lines = [f"{summary['case']['name']}: design of the family {found['family']}", "", found["verdict"]]
+        lines += ["", "Worst pipe peak of every device", *rows]
+        if summary["unverified"]:
+            lines += ["", "Unverified", *(f"  {sentence}" for sentence in summary["unverified"])]
+        return "\n".join(lines)
+
+
+def _metres(value: float | None) -> str:
+    """A peak; what is not finite stands as null in the summary."""
+    return "not bounded" if value is None else f"{value:.5g} m"

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from frahm.errors import ParameterError
+from frahm.files import json_or_nothing
 
 if TYPE_CHECKING:
     from frahm.case import Case
@@ -57,29 +57,26 @@ def holds_case(folder: Path, case: Case) -> bool:
     summary = folder / "summary.json"
     if not summary.exists():
         return _same_case(folder / "case.yaml", case)
+    found = json_or_nothing(summary)
     try:
-        return load_case(json.loads(summary.read_text(encoding="utf-8"))["case"]).digest == case.digest
-    except (OSError, ValueError, KeyError, TypeError):
+        return isinstance(found, dict) and load_case(found.get("case")).digest == case.digest
+    except ParameterError:
         return False
 
 
 def holds_sweep(folder: Path) -> bool:
     """Whether `frahm sweep` wrote the folder; quick, nothing heavy is imported for it."""
-    try:
-        attributes = json.loads((folder / "zarr.json").read_text(encoding="utf-8"))["attributes"]
-        return str(attributes["schema"]).startswith("frahm-sweep-")
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
+    group = json_or_nothing(folder / "zarr.json")
+    attributes = group.get("attributes") if isinstance(group, dict) else None
+    return isinstance(attributes, dict) and str(attributes.get("schema")).startswith("frahm-sweep-")
 
 
 def holds_design(folder: Path) -> bool:
     """Whether `frahm design` wrote the folder."""
     from frahm.design.store import SCHEMA
 
-    try:
-        return json.loads((folder / "summary.json").read_text(encoding="utf-8"))["schema"] == SCHEMA
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
+    summary = json_or_nothing(folder / "summary.json")
+    return isinstance(summary, dict) and summary.get("schema") == SCHEMA
 
 
 def _same_case(file: Path, case: Case) -> bool:

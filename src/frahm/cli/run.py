@@ -11,6 +11,7 @@ from frahm.cli.cases import CaseArgument
 from frahm.cli.folder import holds_design
 from frahm.cli.guarded import ExitCode, held_interrupts
 from frahm.cli.notes import say_notes
+from frahm.cli.terminal import say
 
 if TYPE_CHECKING:
     from frahm.analysis import Analysis
@@ -72,12 +73,16 @@ def show(folder: FolderArgument) -> None:
 
     text = stored_design_text(folder) or stored_sweep_text(folder)
     if text is not None:
-        typer.echo(text)
+        say(text)
         return
     from frahm.analysis import load_analysis
     from frahm.cli.results import results_text
+    from frahm.errors import door
 
-    typer.echo(results_text(load_analysis(folder)))
+    analysis = load_analysis(folder)
+    with door("DIR", str(folder), "a folder that `frahm run` wrote", "summary.json is damaged."):
+        text = results_text(analysis)
+    say(text)
 
 
 def warmup() -> None:

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frahm.errors import ParameterError, nearest
+from frahm.errors import ParameterError, door, nearest
 from frahm.exchange.layout import check_layout, dataset_of, layout_of
 from frahm.exchange.mat import read_mat, write_mat
 from frahm.exchange.tables import read_csv, write_csv
-from frahm.files import write_bytes, write_text
+from frahm.files import existing_file, file_text, write_bytes, write_text
+from frahm.tables.netcdf import netcdf_dataset
+from frahm.untrusted import MOST_BYTES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,13 +40,15 @@ def write_data(result: Any, path: str | Path) -> list[Path]:
     Raises
     ------
     ParameterError
-        If the ending is not known or the file cannot be written.
+        If the ending is not known, the file cannot be written, or cannot hold what is in the dataset.
     """
     target = Path(path)
     dataset = result.to_dataset() if hasattr(result, "to_dataset") and not hasattr(result, "data_vars") else result
     if not hasattr(dataset, "data_vars"):
         raise ParameterError("result", type(result).__name__, "an xarray.Dataset, or a result with to_dataset")
-    return list(_WRITERS[_ending(target)](dataset, target))
+    writer, ending = _WRITERS[_ending(target)], target.suffix.lower()
+    with door("result", type(result).__name__, f"a dataset that a file of the kind {ending} can hold"):
+        return list(writer(dataset, target))
 
 
 def read_data(path: str | Path) -> xr.Dataset:
@@ -67,15 +71,9 @@ def read_data(path: str | Path) -> xr.Dataset:
     """
     source = Path(path)
     reader = _READERS[_ending(source)]
-    if not source.is_file():
-        raise ParameterError("file", str(path), "a file that exists")
-    try:
+    existing_file(source, largest=MOST_BYTES)
+    with door("file", str(path), "a file that frahm wrote", "It is damaged, or of another program."):
         return reader(source)
-    except (OSError, ValueError, KeyError, TypeError, IndexError) as error:
-        if isinstance(error, ParameterError):
-            raise
-        reason = getattr(error, "strerror", None) or "It is damaged, or of another program"
-        raise ParameterError("file", str(path), "a file that frahm wrote", hint=f"{reason}.") from None
 
 
 def _ending(path: Path) -> str:
@@ -93,9 +91,7 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> list[Path]:
 
 
 def _read_netcdf(path: Path) -> xr.Dataset:
-    import xarray as xr
-
-    return xr.load_dataset(path, engine="h5netcdf")
+    return netcdf_dataset(path)
 
 
 def _write_json(dataset: xr.Dataset, path: Path) -> list[Path]:
@@ -107,9 +103,11 @@ def _write_json(dataset: xr.Dataset, path: Path) -> list[Path]:
 
 
 def _read_json(path: Path) -> xr.Dataset:
-    layout = check_layout(json.loads(path.read_text(encoding="utf-8")), str(path))
+    layout = check_layout(json.loads(file_text(path)), str(path))
     arrays = {}
     for name, facts in layout["variables"].items():
+        if isinstance(facts["data"], list) != bool(facts["dims"]):
+            raise ValueError(f"the data of {name} do not fit its dimensions")
         values = np.asarray(facts["data"], dtype=object)
         if facts["dtype"].startswith("float"):
             values = np.array([math.nan if v is None else float(v) for v in values.reshape(-1)]).reshape(values.shape)
@@ -120,7 +118,7 @@ def _read_json(path: Path) -> xr.Dataset:
 def _strict(values: np.ndarray) -> Any:
     """Nested lists of strict JSON: NaN is null, infinity a text."""
     if values.dtype.kind != "f":
-        return values.tolist()
+        return np.vectorize(str, otypes=[object])(values).tolist() if values.dtype.kind in "OUS" else values.tolist()
     cells = [None if math.isnan(v) else v if math.isfinite(v) else str(v) for v in values.reshape(-1).tolist()]
     return np.array(cells, dtype=object).reshape(values.shape).tolist()
 

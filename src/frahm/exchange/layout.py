@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FORMAT = "frahm-dataset-1"
+_DTYPE = re.compile(r"str|bool|u?int(8|16|32|64)|float(16|32|64|128)|longdouble")
 
 
 def layout_of(dataset: xr.Dataset) -> dict[str, Any]:
@@ -49,10 +51,27 @@ def dataset_of(layout: Mapping[str, Any], arrays: Mapping[str, Any]) -> xr.Datas
 
 
 def check_layout(layout: Any, path: str) -> dict[str, Any]:
-    """The layout, if it is one this version knows."""
-    if not isinstance(layout, dict) or layout.get("format") != FORMAT or "variables" not in layout:
-        raise ParameterError("file", path, "a file that frahm wrote")
+    """The layout, if it is one this version knows and can be meant."""
+    known = isinstance(layout, dict) and layout.get("format") == FORMAT
+    if not known or not _is_consistent(layout):
+        hint = "Its layout contradicts itself." if known else "It is of another program."
+        raise ParameterError("file", path, "a file that frahm wrote", hint=hint)
     return layout
+
+
+def _is_consistent(layout: dict[str, Any]) -> bool:
+    """Whether every part of a layout is of its type, and every name known."""
+    dims, variables = layout.get("dims"), layout.get("variables")
+    if not (isinstance(dims, dict) and isinstance(variables, dict) and isinstance(layout.get("attrs"), dict)):
+        return False
+    sizes = all(isinstance(size, int) and size >= 0 for size in dims.values())
+    return sizes and all(
+        isinstance(facts, dict)
+        and isinstance(facts.get("dims"), list) and all(isinstance(d, str) and d in dims for d in facts["dims"])
+        and isinstance(facts.get("dtype"), str) and _DTYPE.fullmatch(facts["dtype"]) is not None
+        and isinstance(facts.get("attrs"), dict) and isinstance(facts.get("coord"), bool)
+        for facts in variables.values()
+    )  # fmt: skip
 
 
 def _dtype_name(name: str, dtype: np.dtype[Any]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 import json
 import re
 from pathlib import Path
@@ -13,6 +14,7 @@ import numpy as np
 from frahm.errors import ParameterError
 from frahm.exchange.layout import check_layout, dataset_of, layout_of
 from frahm.files import write_bytes
+from frahm.untrusted import binary_content
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,8 +37,8 @@ def write_mat(dataset: xr.Dataset, path: Path) -> list[Path]:
     layout = layout_of(dataset) | {"names": names}
     content: dict[str, Any] = {
         "data": {names[str(name)]: _matlab(v.values) for name, v in dataset.variables.items()},
-        "units": {names[str(name)]: str(v.attrs.get("units", "")) for name, v in dataset.variables.items()},
-        "long_names": {names[str(name)]: str(v.attrs.get("long_name", "")) for name, v in dataset.variables.items()},
+        "units": {names[str(name)]: str(v.attrs.get("units") or "") for name, v in dataset.variables.items()},
+        "long_names": {names[str(name)]: str(v.attrs.get("long_name") or "") for name, v in dataset.variables.items()},
         "layout": json.dumps(layout, allow_nan=False),
     }
     if {"branch", "detached", "special_kind"} <= set(dataset.variables):
@@ -49,47 +51,32 @@ def write_mat(dataset: xr.Dataset, path: Path) -> list[Path]:
 
 def read_mat(path: Path) -> xr.Dataset:
     """The dataset that `write_mat` wrote."""
-    content = load_mat(path)
-    try:
-        layout = check_layout(json.loads(str(np.squeeze(content["layout"]))), str(path))
-        data = content["data"][0, 0]
-    except (KeyError, ValueError, IndexError):
+    content = binary_content("mat", path)
+    text, data = content.get("layout"), content.get("data")
+    if not isinstance(text, str) or not isinstance(data, dict):
         hint = "frahm.read_table and frahm.read_time_series read any other."
-        raise ParameterError("file", str(path), "a MAT file that frahm wrote", hint=hint) from None
-    arrays = {}
-    for name, facts in layout["variables"].items():
-        values = data[layout["names"][name]]
-        arrays[name] = (
-            [np.squeeze(cell)[()] if np.size(cell) else "" for cell in np.ravel(values)]
-            if (facts["dtype"] == "str")
-            else values
-        )
+        raise ParameterError("file", str(path), "a MAT file that frahm wrote", hint=hint)
+    layout = check_layout(json.loads(text), str(path))
+    arrays = {name: _values(data[layout["names"][name]]) for name in layout["variables"]}
     return dataset_of(layout, arrays)
 
 
-def load_mat(path: Path) -> dict[str, Any]:
-    """Variables of a MAT file."""
-    import scipy.io
-
-    allowed = "a MAT file of version 5"
-    try:
-        return dict(scipy.io.loadmat(path, struct_as_record=True))
-    except NotImplementedError:
-        hint = "It is of version 7.3: in MATLAB, save it with the option -v7."
-        raise ParameterError("file", str(path), allowed, hint=hint) from None
-    except (OSError, ValueError, TypeError, IndexError, scipy.io.matlab.MatReadError) as error:
-        raise ParameterError("file", str(path), allowed, hint=f"{getattr(error, 'strerror', None) or error}.") from None
+def _values(values: Any) -> Any:
+    """Numbers as they are; text as a list, nothing in it as MATLAB writes an empty text."""
+    if isinstance(values, str):
+        return [values]
+    return [entry if isinstance(entry, str) else "" for entry in values] if isinstance(values, list) else values
 
 
 def _names(dataset: xr.Dataset) -> dict[str, str]:
     """Names MATLAB allows, by name in the dataset."""
     names: dict[str, str] = {}
     for name in map(str, dataset.variables):
-        plain = re.sub(r"\W", "_", name)
+        plain = re.sub(r"\W", "_", name, flags=re.ASCII)
         plain = (plain if plain[:1].isalpha() else f"v_{plain}")[:_LONGEST]
-        while plain in names.values():
-            plain = f"{plain[: _LONGEST - 2]}_2" if not plain.endswith("_2") else f"{plain[: _LONGEST - 2]}_x"
-        names[name] = plain
+        taken = set(names.values())
+        others = (f"{plain[: _LONGEST - 6]}_{i}" for i in itertools.count(2))
+        names[name] = next(choice for choice in itertools.chain([plain], others) if choice not in taken)
     return names
 
 

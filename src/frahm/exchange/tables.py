@@ -17,7 +17,7 @@ import numpy as np
 
 from frahm.errors import ParameterError
 from frahm.exchange.layout import check_layout, dataset_of, layout_of
-from frahm.files import write_text
+from frahm.files import file_text, write_text
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -43,7 +43,7 @@ def write_csv(dataset: xr.Dataset, path: Path) -> list[Path]:
 
 def read_csv(path: Path) -> xr.Dataset:
     """The dataset that `write_csv` wrote."""
-    first = path.read_text(encoding="utf-8").splitlines()[:1]
+    first = file_text(path).split("\n", 1)[:1]
     if not first or not first[0].startswith(_MARK):
         raise ParameterError("file", str(path), "a table that frahm wrote", hint="frahm.read_table reads any other.")
     head = json.loads(first[0].removeprefix(_MARK))
@@ -76,7 +76,7 @@ def _text(dataset: xr.Dataset, dims: tuple[str, ...], more: Any = None) -> str:
             break
         index = np.indices(shape)[axis].reshape(-1)
         values = dataset[dim].values[index] if dim in dataset.variables else index
-        units = dataset[dim].attrs.get("units", "") if dim in dataset.variables else ""
+        units = dataset[dim].attrs.get("units") or "" if dim in dataset.variables else ""
         places.append((f"at {dim}", str(units), values.tolist()))
     stream = io.StringIO()
     if more is not None:
@@ -85,7 +85,7 @@ def _text(dataset: xr.Dataset, dims: tuple[str, ...], more: Any = None) -> str:
         if variable.attrs.get("long_name"):
             stream.write(f"# {name}: {variable.attrs['long_name']}\n")
     writer = csv.writer(stream, lineterminator="\n")
-    columns = [*places, *((name, str(v.attrs.get("units", "")), v.values.reshape(-1).tolist()) for name, v in table)]
+    columns = [*places, *((name, str(v.attrs.get("units") or ""), v.values.reshape(-1).tolist()) for name, v in table)]
     writer.writerow([name for name, _, _ in columns])
     writer.writerow([units for _, units, _ in columns])
     writer.writerows(zip(*(list(map(_cell, values)) for _, _, values in columns), strict=True))
@@ -97,10 +97,7 @@ def _cell(value: Any) -> str:
 
 
 def _columns(path: Path) -> dict[str, list[str]]:
-    try:
-        lines = iter(path.read_text(encoding="utf-8").splitlines(keepends=True))
-    except OSError as error:
-        raise ParameterError("file", str(path), "a table that frahm wrote", hint=f"{error.strerror}.") from None
+    lines = iter(file_text(path, "a table that frahm wrote").splitlines(keepends=True))
     rows = list(csv.reader(_without_comments(lines)))
     names = rows[0] if rows else []
     return {name: [row[i] for row in rows[2:]] for i, name in enumerate(names)}

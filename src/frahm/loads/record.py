@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from pydantic_core import PydanticCustomError
 
 from frahm.arrays import Floats, finite_array, frozen, labelled
-from frahm.case.csv_text import csv_rows
+from frahm.case.table_files import table_rows
 from frahm.case.wind import RECORD_COLUMNS, SPECTRA
 from frahm.errors import ParameterError, check_choice, check_count, check_number
 
@@ -100,7 +100,7 @@ def read_record(path: str | os.PathLike[str]) -> WindRecord:
     """
     name = os.fspath(path)
     try:
-        rows = csv_rows(str(Path(name).resolve()), RECORD_COLUMNS)
+        rows = table_rows(str(Path(name).resolve()), RECORD_COLUMNS)
     except PydanticCustomError as error:
         context = error.context or {}
         raise ParameterError("record", name, str(context["allowed"]), hint=context.get("hint")) from None

@@ -1,1 +1,5 @@
 """Room `published`."""
+
+from frahm.lazy import submodules
+
+__getattr__ = submodules(__name__)

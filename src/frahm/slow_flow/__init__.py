@@ -1,5 +1,6 @@
 """Room `slow_flow`: the mixed multiple-scales / harmonic-balance theory of one mode with one cubic sink."""
 
+from frahm.lazy import submodules
 from frahm.slow_flow.boundaries import AXES, BoundaryCurve, boundary_curves
 from frahm.slow_flow.branches import LocatedPoint, SlowBranches, locate_points, slow_branches
 from frahm.slow_flow.manifold import Folds, SlowManifold, slow_manifold
@@ -24,3 +25,5 @@ __all__ = [
     "slow_flow_of",
     "slow_manifold",
 ]
+
+__getattr__ = submodules(__name__)  # the derivation and the check of the paper need SymPy, which loads slowly

@@ -12,8 +12,8 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from frahm.case import Case, builtin_names, case_schema, load_case
-from frahm.case.csv_text import beside
 from frahm.case.quantities import Count, Door, Quantity, refusal
+from frahm.case.table_files import beside
 from frahm.errors import ParameterError, nearest
 
 _SPAN = ("from", "to", "count", "spacing")
@@ -171,7 +171,9 @@ class BaseCase(Door):
             return load_case(value if value in builtin_names() else beside(Path(value)))
         except ParameterError as error:
             if error.where is not None:
-                raise refusal("a case without mistakes", hint=str(error), value=str(value), path="case") from None
+                first, *more = str(error).splitlines()
+                allowed = "a case without mistakes"
+                raise refusal(allowed, hint=first, value=str(value), path="case", also=more) from None
             raise refusal(self.allowed, hint=error.hint, value=str(value), path="case") from None
 
     def json_schema(self) -> dict[str, Any]:
@@ -185,7 +187,7 @@ def _written_here(value: Mapping[Any, Any]) -> Case:
         return load_case(value)
     except ParameterError as error:
         path = "case" if error.name == "case" else f"case.{error.name}"
-        raise refusal(error.allowed, hint=error.hint, path=path, value=error.value) from None
+        raise refusal(error.allowed, hint=error.hint, path=path, value=error.value, also=error.also) from None
 
 
 def is_window(place: Any) -> bool:

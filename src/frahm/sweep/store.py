@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from frahm.errors import ParameterError
+from frahm.errors import ParameterError, door
 from frahm.files import write_text
 from frahm.sweep.batch import Batch
 from frahm.sweep.layout import (
@@ -53,8 +53,9 @@ def stored_study(folder: str | Path) -> Study:
     """
     attributes = attributes_of(Path(folder))
     try:
-        return load_study(json.loads(attributes["study"]))
-    except (ValueError, KeyError, TypeError) as error:
+        with door("study", "that of the store", "a study"):
+            return load_study(json.loads(attributes["study"]))
+    except (ParameterError, KeyError) as error:
         hint = f"The study in it cannot be read: {error}."
         raise ParameterError("store", str(folder), ALLOWED, hint=hint) from None
 

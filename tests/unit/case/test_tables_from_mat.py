@@ -42,7 +42,7 @@ def test_a_table_of_winds_comes_in(tmp_path):
 @pytest.mark.parametrize(
     ("vectors", "words"),
     [
-        ({"time": [0.0, 1.0], "speed": [2.0]}, "time has 2, speed has 1"),
+        ({"time": [0.0, 1.0], "speed": [2.0]}, "no column speed. Left out, because 2 rows are the most: speed has 1"),
         ({"time": [0.0, 1.0], "sped": [2.0, 3.0]}, "Did you mean 'speed'"),
         ({"time": [0.0, np.nan], "speed": [2.0, 3.0]}, "a finite number"),
         ({"remark": "nothing"}, "no vector of numbers"),

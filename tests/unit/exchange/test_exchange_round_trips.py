@@ -228,3 +228,92 @@ def test_unknown_endings_missing_and_damaged_files_are_refused(tmp_path, curve):
     with pytest.raises(frahm.ParameterError, match="to_dataset"):
         frahm.write_data([1, 2], tmp_path / "a.nc")
     assert math.isnan(float(frahm.read_data(frahm.write_data(awkward(), tmp_path / "ok.json")[0])["a.b c"][0, 1]))
+
+
+def foreign(**attributes):
+    return xr.Dataset({"x": ("t", [1.0, 2.0], attributes)}, {"t": ("t", [0.0, 1.0])}, attributes)
+
+
+@pytest.mark.parametrize("ending", [".csv", ".mat", ".json"])
+def test_attributes_that_say_nothing_come_back(tmp_path, ending):
+    dataset = foreign(units=None, long_name=None)
+    same(frahm.read_data(frahm.write_data(dataset, tmp_path / f"a{ending}")[0]), dataset)
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+@pytest.mark.parametrize(
+    "dataset",
+    [
+        foreign(units=None),
+        foreign(note={"a": 1}),
+        xr.Dataset({"x": ("t", np.array([1j, 2.0]))}),
+        xr.Dataset({"x": ("t", np.array(["2024-01-01"], dtype="datetime64[ns]"))}),
+        xr.Dataset({"x": ("t", np.array(["\ud800"], dtype=object))}),
+        xr.Dataset({"x": ("t", np.array([object(), 1], dtype=object))}),
+        xr.Dataset({("a", 1): ("t", [1.0])}),
+        xr.Dataset({"x/y": ("t", [1.0])}),
+    ],
+)
+def test_a_dataset_of_another_program_is_written_or_refused_for_what_it_is(tmp_path, ending, dataset):
+    message = None
+    try:
+        files = frahm.write_data(dataset, tmp_path / f"a{ending}")
+    except frahm.ParameterError as error:
+        message = str(error)
+    if message is None:
+        assert set(frahm.read_data(files[0]).data_vars) == set(map(str, dataset.data_vars))
+    else:
+        assert "directory that can be written" not in message
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_names_no_program_likes_come_back_from_mat(tmp_path):
+    long = "a" * 80
+    names = ["größe", "величина", "grøße", "gr e", "gr-e", "gr.e", "gr+e", *(f"{long}{i}" for i in range(12))]
+    dataset = xr.Dataset({name: ("t", [float(i)]) for i, name in enumerate(names)})
+    same(frahm.read_data(frahm.write_data(dataset, tmp_path / "a.mat")[0]), dataset)
+    assert all(name.isascii() for name in scipy.io.loadmat(tmp_path / "a.mat")["data"].dtype.names)
+
+
+def _layout(**changes):
+    facts = {"dims": ["t"], "dtype": "float64", "coord": False, "attrs": {}, "data": [1.0]} | changes.pop("x", {})
+    return {"format": "frahm-dataset-1", "dims": {"t": 1}, "attrs": {}, "variables": {"x": facts}} | changes
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[" * 100_000,
+        "null",
+        "1" * 5000,
+        '{"format": "frahm-dataset-1"}',
+        *(
+            json.dumps(_layout(**changes))
+            for changes in (
+                {"dims": None}, {"dims": {"t": "one"}}, {"dims": {"t": -1}}, {"dims": {}}, {"attrs": []},
+                {"variables": None}, {"variables": {"x": None}}, {"variables": {"x": {}}},
+                {"x": {"dims": None}}, {"x": {"dims": [[]]}}, {"x": {"dims": ["u"]}}, {"x": {"dtype": None}},
+                {"x": {"dtype": "S99999999999"}}, {"x": {"dtype": "object"}}, {"x": {"attrs": None}},
+                {"x": {"attrs": {"a": {}}}}, {"x": {"attrs": {"a": {"number": []}}}}, {"x": {"coord": 1}},
+                {"x": {"data": None}}, {"x": {"data": {"a": 1}}}, {"x": {"data": [[1.0, 2.0], [3.0]]}},
+                {"x": {"data": ["one"]}}, {"x": {"data": [1.0, 2.0]}}, {"dims": {"t": 10**15}},
+            )
+        ),
+    ],
+)  # fmt: skip
+def test_json_of_any_other_kind_is_refused(tmp_path, text):
+    (tmp_path / "a.json").write_text(text, encoding="utf-8")
+    with pytest.raises(frahm.ParameterError, match=r"a\.json"):
+        frahm.read_data(tmp_path / "a.json")
+    if text.startswith("{"):
+        layout = json.loads(text)
+        (tmp_path / "a.csv").write_text("# layout: " + json.dumps({"layout": layout, "files": None}) + "\nx\nm\n1\n")
+        with pytest.raises(frahm.ParameterError, match=r"a\.csv"):
+            frahm.read_data(tmp_path / "a.csv")
+
+
+def test_a_table_is_read_from_the_files_beside_it_only(tmp_path):
+    head = {"layout": _layout(), "files": ["../a.csv"]}
+    (tmp_path / "a.csv").write_text("# layout: " + json.dumps(head) + "\nx\nm\n1\n")
+    with pytest.raises(frahm.ParameterError):
+        frahm.read_data(tmp_path / "a.csv")

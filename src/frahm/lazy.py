@@ -1,0 +1,20 @@
+"""Modules that are imported when they are first asked for."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from collections.abc import Callable
+from typing import Any
+
+
+def submodules(package: str) -> Callable[[str], Any]:
+    """The `__getattr__` of a package whose modules are reachable without an import of their own."""
+
+    def find(name: str) -> Any:
+        path = f"{package}.{name}"
+        if name.startswith("_") or importlib.util.find_spec(path) is None:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        return importlib.import_module(path)
+
+    return find
