@@ -329,9 +329,12 @@ def connected(tracks: list[Track]) -> list[Track]:
 
 
 def _response_at(track: Track, W: float) -> float:
-    """Smallest relative amplitude of a branch at one of its frequencies; infinite if it has no point there."""
+    """Smallest relative peak of a branch at one of its frequencies; infinite if it has no point there.
+
+    Not the amplitude: about another equilibrium that is small, too.
+    """
     here = track.frequency == W
-    return float(np.min(track.columns[here, 2])) if np.any(here) else math.inf
+    return float(np.min(track.columns[here, 4])) if np.any(here) else math.inf
 
 
 def solve_seed(search: Search, seed: Seed, odd: bool) -> tuple[Floats, int] | None:
