@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 
-.PHONY: setup run reproduce test lint types bench docs scatter-study where-a-sink-wins examples validation clean
+.PHONY: setup run reproduce test fuzz lint types bench docs scatter-study where-a-sink-wins examples validation clean
 
 setup: $(STAMP)
 
@@ -22,6 +22,9 @@ reproduce: setup
 
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal
+
+fuzz: setup
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m hypothesis --hypothesis-profile search
 
 lint: setup
 	$(BIN)/ruff check .

@@ -2,16 +2,17 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import frahm
 from frahm.harmonic_balance import begin, branches, find_branches
 from frahm.harmonic_balance.events import unstable_count
 from frahm.systems import with_parameters
+from searching import at_most
 
 LO, HI = 0.7, 1.35
-quickly = settings(max_examples=12, deadline=None, derandomize=True, database=None)
+quickly = at_most(12, more=4)
 
 
 @st.composite
@@ -95,7 +96,7 @@ def test_from_which_end_the_search_starts(system):
     [("_LONGEST", 0.007), ("_LONGEST", 0.031), ("_SEED_FREQUENCIES", 80), ("_SEED_FREQUENCIES", 81), ("_GRID", 282)],
 )
 @given(system=systems())
-@settings(quickly, max_examples=6)
+@at_most(6, more=4)
 def test_steps_and_grids(setting, system):
     expected = frahm.frequency_response(system, frequency=(LO, HI))
     with pytest.MonkeyPatch.context() as patch:
@@ -106,7 +107,7 @@ def test_steps_and_grids(setting, system):
 
 
 @given(systems(modes=(1,)))
-@settings(quickly, max_examples=8)
+@at_most(8, more=4)
 def test_number_of_harmonics(system):
     expected = frahm.frequency_response(system, frequency=(LO, HI))
     found = frahm.frequency_response(system, frequency=(LO, HI), harmonics=45)

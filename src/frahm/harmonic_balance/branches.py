@@ -11,9 +11,10 @@ import scipy.linalg
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Floats
 from frahm.harmonic_balance.condensation import Problem, condense, unknowns
-from frahm.harmonic_balance.events import LocatedEvent, Point, events_after, is_eventful
+from frahm.harmonic_balance.events import LocatedEvent, Point, events_after, events_seen, is_eventful
 from frahm.harmonic_balance.floquet import Variation, variation_of
 from frahm.harmonic_balance.follow import CLOSED, follow
+from frahm.harmonic_balance.found import Budget
 from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count
 from frahm.harmonic_balance.newton import correct, solve_at
 from frahm.harmonic_balance.orbits import between, describe, same_harmonics
@@ -43,6 +44,7 @@ _BAND = 0.65  # ln(hi/lo) of the widest window these numbers of frequencies are 
 _SHORT_RANGE, _AROUND = 16, 9  # points of the grid in a short range of three roots; frequencies looked at around it
 _STRONG_FREQUENCIES = 9
 _STRONG_THIRD = 0.12  # third harmonic beside the first from where on both are searched together
+_BEYOND_NUMBERS = 1e300  # stands for a multiplier that no number holds
 _CROSSING = 5e-3  # of a point: how near a branch passes that crosses another one there
 
 
@@ -95,6 +97,7 @@ class Search:
     x_scale: float
     w_scale: float
     harmonics: int | None
+    budget: Budget = field(default_factory=Budget)
 
     @property
     def highest(self) -> int:
@@ -223,7 +226,7 @@ def _buckled_branches(search: Search, seeds: list[Seed], known: list[Track]) -> 
     """
     tracks: list[Track] = []
     for seed in seeds:
-        start = solve_seed(search, seed, False)
+        start = None if search.budget.reached else solve_seed(search, seed, False)
         if start is None or np.linalg.norm(_even_part(search, *start)) < 1e-3 * search.x_scale:
             continue
         others = [track for track in known + tracks if not track.odd]
@@ -239,7 +242,7 @@ def _follow_new(search: Search, seeds: list[Seed], tracks: list[Track]) -> None:
     """Follow the branches of all starts that do not lie on one already followed, and add them."""
     odd = search.problem.odd
     for seed in seeds:
-        start = solve_seed(search, seed, odd)
+        start = None if search.budget.reached else solve_seed(search, seed, odd)
         if start is not None and not any(_lies_on(search, track, *start) for track in tracks):
             tracks.append(_followed(search, odd, *start))
 
@@ -329,9 +332,12 @@ def connected(tracks: list[Track]) -> list[Track]:
 
 
 def _response_at(track: Track, W: float) -> float:
-    """Smallest relative amplitude of a branch at one of its frequencies; infinite if it has no point there."""
+    """Smallest relative peak of a branch at one of its frequencies; infinite if it has no point there.
+
+    Not the amplitude: about another equilibrium that is small, too.
+    """
     here = track.frequency == W
-    return float(np.min(track.columns[here, 2])) if np.any(here) else math.inf
+    return float(np.min(track.columns[here, 4])) if np.any(here) else math.inf
 
 
 def solve_seed(search: Search, seed: Seed, odd: bool) -> tuple[Floats, int] | None:
@@ -403,12 +409,15 @@ def _followed(search: Search, odd: bool, y: Floats, H: int) -> Track:
 
 def _run(search: Search, odd: bool, y: Floats, H: int, direction: float) -> tuple[tuple[np.ndarray, ...], int]:
     size = search.size(odd)
-    ys, ts = np.empty((_MOST_POINTS, size)), np.empty((_MOST_POINTS, size))
-    Hs, truncations = np.empty(_MOST_POINTS, np.int64), np.empty(_MOST_POINTS)
+    most = search.budget.points_of(unknowns(search.problem, H, odd), _MOST_POINTS)
+    ys, ts = np.empty((most, size)), np.empty((most, size))
+    Hs, truncations = np.empty(most, np.int64), np.empty(most)
     count, ending = follow(
         search.problem, odd, y, H, search.highest, search.goal, direction, *search.outer,
         search.x_scale, search.w_scale, _LONGEST, ys, ts, Hs, truncations,
     )  # fmt: skip
+    if count:
+        search.budget.take_points(count, int(np.mean(unknowns(search.problem, Hs[:count], odd))))
     return (ys[:count].copy(), ts[:count].copy(), Hs[:count].copy(), truncations[:count].copy()), ending
 
 
@@ -450,6 +459,9 @@ def _births_outside(search: Search, track: Track, inside: np.ndarray) -> list[tu
         part = Track(True, track.ys[rows], track.ts[rows], track.Hs[rows], track.truncations[rows],
                      *_described(search, True, track.ys[rows], track.Hs[rows]), False, ())  # fmt: skip
         for i in np.flatnonzero(is_eventful(search, part)):
+            if search.budget.events <= 0:
+                break
+            search.budget.events -= 1
             events = events_after(search, part, int(i))
             found += [(event, point) for event, point in events if event.kind == "branch-point" and point is not None]
     return found
@@ -476,7 +488,7 @@ def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> li
         ends = [c for t in known + tracks if not t.odd for c in (t.columns[0], t.columns[-1])]
         if any(np.allclose(c[[0, 4]], event.columns[[0, 4]], rtol=2e-3) for c in ends):
             continue
-        start = _asymmetric_start(search, *point)
+        start = None if search.budget.reached else _asymmetric_start(search, *point)
         if start is None:
             continue
         track = _half_of_pair(search, _followed(search, False, *start))
@@ -619,7 +631,8 @@ def _on_edge(search: Search, track: Track, i: int, edge: float) -> tuple[Floats,
 def _uncover(search: Search, track: Track) -> None:
     """Insert points where a multiplier may leave the unit circle and come back between two points, or moves far."""
     for _ in range(6):
-        logs = np.log(np.maximum(np.abs(track.multipliers), 1e-300))
+        m = np.where(np.isfinite(track.multipliers), track.multipliers, _BEYOND_NUMBERS)
+        logs = np.log(np.maximum(np.abs(m), 1e-300))
         left, mid, right = logs[:-2], logs[1:-1], logs[2:]
         bend = left - 2 * mid + right
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -627,12 +640,13 @@ def _uncover(search: Search, track: Track) -> None:
         crossed = (np.sign(summit) != np.sign(mid)) | (np.abs(summit) < 0.1 * np.abs(bend))
         hidden = ((mid - left) * (mid - right) > 0) & crossed & (np.abs(bend) > 1e-9)
         rows = np.flatnonzero(hidden.any(axis=1)) + 1
-        m = track.multipliers
         leap = np.min(np.abs(m[:-1, :, None] - m[1:, None, :]), axis=2)
-        quick = np.flatnonzero(((leap > _QUICK) & (np.abs(m[:-1]) > 0.9)).any(axis=1))
+        size = np.abs(m[:-1])  # far outside the unit circle a way counts beside the size: steep growth asks for nothing
+        quick = np.flatnonzero(((leap > _QUICK * np.maximum(size, 1.0)) & (size > 0.9)).any(axis=1))
         wanted = np.unique(np.concatenate([rows - 1, rows, quick]))
         wanted = wanted[track.frequency[wanted] != track.frequency[wanted + 1]]  # not across a gap between pieces
-        if not _insert(search, track, wanted):
+        search.budget.take_points(len(wanted), int(unknowns(search.problem, np.max(track.Hs), track.odd)))
+        if search.budget.reached or not _insert(search, track, wanted):
             return
 
 
@@ -679,7 +693,9 @@ def _locate_events(search: Search, track: Track) -> None:
     """Locate every change of stability or direction along the branch and put its point on the branch."""
     inserted: list[tuple[int, Point]] = []
     for i in np.flatnonzero(is_eventful(search, track)):
-        for event, point in events_after(search, track, int(i)):
+        look = events_after if search.budget.events > 0 else events_seen
+        for event, point in look(search, track, int(i)):
+            search.budget.events -= 1
             track.events.append(event)
             track.event_points.append(point)
             if point is not None:

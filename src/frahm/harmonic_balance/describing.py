@@ -97,7 +97,7 @@ def amplitude_table(pb: Problem, rest: float, linear: Floats, damped: Floats, sy
         None if there is no row.
     """
     d = float(pb.directions[0, 0])
-    edge, _ = outer_balances(pb, rest / d**2)
+    edge = outer_balances(pb, rest / d**2)
     low = _LOWEST * abs(d) * float(np.min(linear))
     high = 1.5 * abs(d) * float(np.max(damped)) if np.all(np.isfinite(damped)) else math.inf
     high = min(high, low * 10.0**_MOST_DECADES)
@@ -153,11 +153,11 @@ def friction_stiffness(pb, a, W, out):
 
 @kernel
 def outer_balances(pb, rest):
-    """Largest |m| at which rest m + g(m) changes its sign, and at which it does so at a well; 0 if there is none.
+    """Largest |m| at which rest m + g(m) changes its sign, at a well or a top; 0 if there is none.
 
     Searched between 1 nm and 10 km.
     """
-    outermost = well = 0.0
+    outermost = 0.0
     code = pb.codes[0]
     for side in (-1.0, 1.0):
         last = 0.0
@@ -166,11 +166,9 @@ def outer_balances(pb, rest):
             value = rest * m + law_force(code[0], code[1], code[2], pb.table, m, 0.0)
             if value * last < 0.0:
                 outermost = max(outermost, abs(m))
-                if side * value > 0.0:
-                    well = max(well, abs(m))
             if value != 0.0:
                 last = value
-    return outermost, well
+    return outermost
 
 
 @kernel

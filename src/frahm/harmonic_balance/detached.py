@@ -11,6 +11,7 @@ from frahm.arrays import Complexes, Floats
 from frahm.continuation import CurvePoint, between_points
 from frahm.harmonic_balance.condensation import Problem
 from frahm.harmonic_balance.equations import Equations, Orbit
+from frahm.harmonic_balance.found import Found
 from frahm.harmonic_balance.loci import loci_with_frequency, orbit_peaks
 from frahm.systems import System
 
@@ -44,7 +45,7 @@ class DetachedCurveEvent:
 
 def detached_events(
     system: System, parameter: str, window: tuple[float, float], bounds: tuple[float, float], slices: int
-) -> list[DetachedCurveEvent]:
+) -> Found[DetachedCurveEvent]:
     """Births and merges of detached curves: extremes of the parameter along its saddle-node curves."""
     _, traces = loci_with_frequency(system, "saddle-node", parameter, window, bounds, slices, asymmetric=False)
     events: list[DetachedCurveEvent] = []
@@ -61,7 +62,11 @@ def detached_events(
             inside = bounds[0] <= event.value <= bounds[1] and window[0] <= event.frequency <= window[1]
             if inside and not any(_same_event(event, other) for other in events):
                 events.append(event)
-    return sorted(events, key=lambda event: event.value)
+    searched = (
+        f"Between {window[0]:.6g} and {window[1]:.6g} rad/s, {parameter} between {bounds[0]:.6g} and {bounds[1]:.6g},"
+        f" along the saddle-nodes met at {slices} values of {parameter}; nothing beyond."
+    )
+    return Found(sorted(events, key=lambda event: event.value), searched)
 
 
 def _event(equations: Equations, point: CurvePoint, parameter: str, direction: int) -> DetachedCurveEvent:

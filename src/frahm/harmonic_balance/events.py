@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 # Moduli this close to one are neutral: a sink without linear spring that hardly moves returns nowhere by itself.
 NEUTRAL = 1e-9
+_NOISE = 1e-13  # of the largest modulus: multipliers below drown in its rounding
 _COMPLEX = 1e-6
 _DEEPEST = 5
 _SHARP = 2e-11  # of the frequency: how sharply a point is located where the equations are regular
@@ -52,8 +53,14 @@ class _Place:
 
 
 def unstable_count(multipliers: np.ndarray) -> np.ndarray:
-    """Number of multipliers outside the unit circle, along the last axis."""
-    return np.asarray(np.sum(np.abs(multipliers) > 1 + NEUTRAL, axis=-1))
+    """Number of multipliers seen outside the unit circle, along the last axis.
+
+    Beside a very large one, or one beyond all numbers, the others drown in rounding: they are not counted.
+    """
+    moduli = np.abs(multipliers)
+    largest = np.max(moduli, axis=-1, keepdims=True)
+    seen = moduli > 1 + NEUTRAL + _NOISE * np.where(np.isfinite(largest), largest, 0.0)
+    return np.where(np.isfinite(largest[..., 0]), np.sum(seen, axis=-1), 1)
 
 
 def is_eventful(search: Search, track: Track) -> np.ndarray:
@@ -70,6 +77,21 @@ def events_after(search: Search, track: Track, i: int) -> list[tuple[LocatedEven
     return _between(search, track.odd, a, b, 0)
 
 
+def events_seen(search: Search, track: Track, i: int) -> list[tuple[LocatedEvent, Point | None]]:
+    """What changes between points i and i + 1 of a branch, not located."""
+    a, b = (_place(search, track.odd, track.ys[k], track.ts[k], int(track.Hs[k])) for k in (i, i + 1))
+    return [(_seen(track.odd, a, b), None)]
+
+
+def _seen(odd: bool, a: _Place, b: _Place) -> LocatedEvent:
+    """The first event between two places, as wide as the step."""
+    folded = a.rise * b.rise < 0
+    rank = -1 if folded else min(a.unstable, b.unstable)
+    critical = (a if a.unstable > b.unstable else b).multipliers[rank]
+    half = 0.5 * abs(b.columns[0] - a.columns[0])
+    return LocatedEvent(_kind(odd, folded, critical), 0.5 * (a.columns + b.columns), half, False)
+
+
 def _place(search: Search, odd: bool, y: Floats, t: Floats, H: int) -> _Place:
     columns, multipliers = np.empty((1, 5)), np.empty((1, 2 * search.variation.K.shape[0]), complex)
     describe(search.problem, search.variation, odd, y[None], np.array([H]), columns, multipliers)
@@ -82,16 +104,13 @@ def _between(search: Search, odd: bool, a: _Place, b: _Place, depth: int) -> lis
     if depth > _DEEPEST or (not folded and a.unstable == b.unstable):
         return []
     rank = -1 if folded else min(a.unstable, b.unstable)
-    critical = (a if a.unstable > b.unstable else b).multipliers[rank]
     y, t = np.zeros(search.size(odd)), np.zeros(search.size(odd))
     ok, H, half = locate(
         search.problem, search.variation, odd, a.y, a.t, a.H, b.y, b.t, b.H, rank, search.x_scale, search.w_scale,
         y, t, np.zeros(len(a.multipliers), complex),
     )  # fmt: skip
     if not ok:
-        half = 0.5 * abs(b.columns[0] - a.columns[0])
-        middle = 0.5 * (a.columns + b.columns)
-        return [(LocatedEvent(_kind(odd, folded, critical), middle, half, False), None)]
+        return [(_seen(odd, a, b), None)]
     here = _place(search, odd, y, t, int(H))
     event = LocatedEvent(_kind(odd, folded, here.multipliers[rank]), here.columns, float(half), True)
     before, after = (_beside(here, end, rank) for end in (a, b))

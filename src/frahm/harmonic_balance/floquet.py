@@ -359,10 +359,16 @@ def _pair(a, b, out, at):
 
 @kernel
 def map_multipliers(pb, va, H, odd, W, u, out):
-    """Eigenvalues of the half map -Phi(T/2) (odd orbits) or of Phi(T), sorted by descending modulus."""
+    """Eigenvalues of the half map -Phi(T/2) (odd orbits) or of Phi(T), sorted by descending modulus.
+
+    All are infinite where a disturbance grows beyond what numbers hold: "unstable" is all that is known there.
+    """
     m = 2 * va.K.shape[0]
     Phi = np.empty((m, m))
     monodromy(pb, va, H, odd, W, u, Phi)
+    if not np.all(np.isfinite(Phi)):
+        out[:] = complex(math.inf, 0.0)
+        return
     trace = 0.0
     for i in range(m):
         trace += Phi[i, i]
@@ -373,6 +379,9 @@ def map_multipliers(pb, va, H, odd, W, u, out):
     for i in range(m):
         Phi[i, i] -= shift
     shifted_eigenvalues(Phi, out)
+    if not np.all(np.isfinite(out)):
+        out[:] = complex(math.inf, 0.0)
+        return
     for i in range(m):
         out[i] += shift
     _sort_by_modulus(out)

@@ -13,6 +13,8 @@ from frahm.harmonic_balance.branches import Search, Track, begin, find_branches
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import unstable_count
 from frahm.harmonic_balance.floquet import monodromy, variation_of
+from frahm.harmonic_balance.found import Found
+from frahm.harmonic_balance.inventory import inventory_text, unfinished
 from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic
 from frahm.harmonic_balance.linear import check_rest, is_linear, linear_exponents, linear_response
 from frahm.harmonic_balance.newton import solve_at
@@ -34,7 +36,8 @@ class PeriodicResponse:
     harmonics : dict of int to ndarray, shape (n,)
         Complex amplitudes X_k [m] of all coordinates: x(t) = Re sum_k X_k e^{i k Omega t}.
     multipliers : ndarray of complex, shape (2n,)
-        Floquet multipliers over one period, by descending modulus.
+        Floquet multipliers over one period, by descending modulus; all infinite where a disturbance grows beyond what
+        numbers hold.
     stable : bool
         Whether no multiplier lies outside the unit circle.
     pipe_peak, relative_peak : float
@@ -76,16 +79,18 @@ class PeriodicResponse:
         return np.asarray(sum((X * np.exp(1j * k * self.frequency * t)).real for k, X in self.harmonics.items()))
 
 
-def periodic_responses_of(system: System, frequency: float, harmonics: int | None) -> list[PeriodicResponse]:
+def periodic_responses_of(system: System, frequency: float, harmonics: int | None) -> Found[PeriodicResponse]:
     """All periodic responses at Omega = `frequency` [rad/s], by ascending relative amplitude.
 
     Branches are searched and followed over a neighbourhood of the frequency, so that a response is found even where
     the first harmonic alone does not see it.
     """
     if is_linear(system) or not np.any(system.forcing):
-        return [_linear(system, frequency)]
+        return Found([_linear(system, frequency)], "A linear system has one periodic response.")
     search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
-    return responses_on(search, find_branches(search), frequency)
+    tracks = find_branches(search)
+    found = responses_on(search, tracks, frequency)
+    return Found(found, inventory_text(search), (*search.budget.sentences(), *unfinished(tracks)))
 
 
 def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> list[PeriodicResponse]:
@@ -139,8 +144,11 @@ def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> Periodi
     rows = {k: np.array([output_harmonic(pb, k, W, u[k], row) for row in range(2 + n)]) for k in ks}
     Phi = np.empty((2 * n, 2 * n))
     monodromy(pb, variation_of(search.system), H, odd, W, u, Phi)
-    values = np.linalg.eigvals(Phi).astype(complex)
-    multipliers = values**2 if odd else values
+    if np.all(np.isfinite(Phi)):
+        values = np.linalg.eigvals(Phi).astype(complex)
+        multipliers = values**2 if odd else values
+    else:  # a disturbance grows beyond all numbers: no multiplier is known
+        multipliers = np.full(2 * n, np.inf, complex)
     multipliers = multipliers[np.argsort(-np.abs(multipliers))]
     peaks = []
     for row in range(2):

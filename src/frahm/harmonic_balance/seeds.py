@@ -211,7 +211,7 @@ class Seeder:
     problem: Problem
     spring: Floats | None  # equivalent stiffness of one odd polynomial element, see `spring_polynomial`
     table: Table | None  # of one element otherwise, or of its motions about other means
-    buckled: bool  # whether an odd system may have responses about another mean than 0
+    buckled: bool  # whether an odd system has other equilibria, wells or tops, about which it may respond
 
     def at(self, W: float, scale: float, first_only: bool = False) -> list[Seed]:
         """All starts at Omega = W [rad/s]; `first_only` leaves out free third harmonics and searches."""
@@ -245,7 +245,7 @@ def seeder_for(pb: Problem, window: Floats) -> Seeder:
     d = float(pb.directions[0, 0])
     if spring is not None and rest >= 0 and np.all(spring >= 0):
         return Seeder(pb, spring, None, False)
-    buckled = bool(pb.odd and outer_balances(pb, rest / d**2)[1] > 0)
+    buckled = bool(pb.odd and outer_balances(pb, rest / d**2) > 0)
     if spring is not None and not buckled:
         return Seeder(pb, spring, None, False)
     parts = [stiffness_at(pb, 1, float(W)) for W in window]

@@ -46,8 +46,8 @@ def _damping(inputs: Inputs) -> Iterator[Implausible]:
             yield inputs.implausible(path, reason, ["%"] if low <= max(ratios) / 100 <= high else [])
         elif min(ratios) < low:
             reason = (
-                "Welded members have 0.0015 (NPD, measured on flare booms), and a rule of thumb knows none with less than"
-                f" {low:g}: in resonance a pipe moves as 1/damping."
+                "Welded members have 0.0015 (NPD, measured on flare booms), and a rule of thumb knows none with less"
+                f" than {low:g}: in resonance a pipe moves as 1/damping."
             )
             yield inputs.implausible(path, reason)
 

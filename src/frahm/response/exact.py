@@ -20,11 +20,12 @@ from frahm.harmonic_balance import (
     linear_response,
     resonant_grid,
 )
-from frahm.harmonic_balance.describing import PER_DECADE
+from frahm.harmonic_balance.inventory import inventory_text, unfinished
 from frahm.response.curve import ResponseCurve, SpecialPoint
 from frahm.systems import System, detuning_of
 
-_ENDED_WELL = (0, 1)
+_MOST_SENTENCES = 5  # on points of one kind on one branch
+_ROUNDING = 2.0**-52
 _ROUGH = 1e-3  # truncation that is worth a word
 
 
@@ -53,31 +54,11 @@ def curve_and_branches(
     tracks = find_branches(search)
     settings["inventory"] = inventory_text(search)
     settings["truncation"] = max((float(np.max(track.truncations)) for track in tracks), default=math.nan)
-    return _assembled(system, tracks, settings), search, tracks
+    return _assembled(system, tracks, search, settings), search, tracks
 
 
-def inventory_text(search: Search) -> str:
-    """What the search for branches proves and what it only searches."""
-    seeder, start = search.seeder, ""
-    dense = f"first-harmonic roots searched on a dense grid of {PER_DECADE} amplitudes a decade (not proven complete)"
-    if seeder.spring is not None:
-        start = "all first-harmonic roots, with every free third harmonic beside them, and near misses of further roots"
-        start += " (a detached curve within about 0.1 % of its birth can be missed)"
-        if seeder.table is not None:
-            start += f"; about other means than 0 from {dense}"
-    elif seeder.table is not None:
-        start = dense
-    else:
-        start = "first-harmonic solutions searched from a fixed spread of starts (not proven complete)"
-    return (
-        f"Branches were followed from {start}. Not searched: responses whose period is a multiple of the excitation's"
-        " (period doublings are located, the doubled motions not followed), and responses without any first-harmonic"
-        " counterpart."
-    )
-
-
-def _assembled(system: System, tracks: list[Track], settings: dict[str, Any]) -> ResponseCurve:
-    special, doubtful = [], []
+def _assembled(system: System, tracks: list[Track], search: Search, settings: dict[str, Any]) -> ResponseCurve:
+    special, doubtful = [], list(search.budget.sentences())
     for number, track in enumerate(tracks):
         for event in track.events:
             W, _, _, pipe, relative = (float(value) for value in event.columns)
@@ -85,16 +66,13 @@ def _assembled(system: System, tracks: list[Track], settings: dict[str, Any]) ->
             status = "located" if event.located else "unverified"
             interval = (W - event.half_width, W + event.half_width)
             special.append(SpecialPoint(event.kind, W, sigma, pipe, relative, number, interval, status))
-            if not event.located:
-                doubtful.append(f"A {event.kind} near {W:.6g} rad/s was seen but not located.")
+        doubtful += _not_located(number, track) + _beyond_numbers(number, track)
         if settings["harmonics"] == "auto" and np.max(track.truncations) > _ROUGH:
             doubtful.append(
                 f"Branch {number}: up to {100 * np.max(track.truncations):.2g} % of the forces lie beyond the highest"
                 " harmonic there is room for, as stops and friction make them; its peaks are no better than that."
             )
-        if any(ending not in _ENDED_WELL for ending in track.endings):
-            where = ", ".join(f"{track.frequency[i]:.6g}" for i in (0, -1))
-            doubtful.append(f"Branch {number} could not be followed to its end; it stops near {where} rad/s.")
+    doubtful += unfinished(tracks)
     hanging = connected(tracks)
     columns = np.concatenate([track.columns for track in tracks]) if tracks else np.empty((0, 5))
     growth = np.concatenate([_growth(track) for track in tracks]) if tracks else np.empty(0)
@@ -112,7 +90,7 @@ def _assembled(system: System, tracks: list[Track], settings: dict[str, Any]) ->
         stable=growth < 0,
         growth_rate=growth,
         detached=tuple(not any(track is other for other in hanging) for track in tracks),
-        asymmetric=tuple(track.parent is not None for track in tracks),
+        asymmetric=tuple(search.problem.odd and not track.odd for track in tracks),
         special_points=tuple(sorted(special, key=lambda p: p.frequency)),
         unverified=tuple(doubtful),
         settings=settings,
@@ -120,10 +98,35 @@ def _assembled(system: System, tracks: list[Track], settings: dict[str, Any]) ->
     )
 
 
+def _not_located(number: int, track: Track) -> list[str]:
+    """What was seen but not located on a branch: a sentence for each, or one for many of a kind."""
+    sentences = []
+    for kind in dict.fromkeys(event.kind for event in track.events if not event.located):
+        at = sorted(float(e.columns[0]) for e in track.events if e.kind == kind and not e.located)
+        if len(at) <= _MOST_SENTENCES:
+            sentences += [f"A {kind} near {W:.6g} rad/s was seen but not located." for W in at]
+        else:
+            where = f"between {at[0]:.6g} and {at[-1]:.6g} rad/s"
+            sentences.append(f"Branch {number}: {len(at)} {kind} points {where} were seen but not located.")
+    return sentences
+
+
+def _beyond_numbers(number: int, track: Track) -> list[str]:
+    """A sentence where disturbances grow too fast for their multipliers to be numbers."""
+    at = track.frequency[~np.all(np.isfinite(track.multipliers), axis=1)]
+    if not at.size:
+        return []
+    return [
+        f"Branch {number}: between {np.min(at):.6g} and {np.max(at):.6g} rad/s a disturbance grows beyond all numbers"
+        " within a period: it is unstable there, and its special points are not known."
+    ]
+
+
 def _growth(track: Track) -> Floats:
     """Largest growth rate [1/s] from the multipliers of the map over half a period or a whole one."""
     span = (math.pi if track.odd else 2 * math.pi) / track.frequency
-    return np.asarray(np.log(np.max(np.abs(track.multipliers), axis=1)) / span)
+    largest = np.max(np.abs(track.multipliers), axis=1)
+    return np.asarray(np.log(np.maximum(largest, _ROUNDING)) / span)  # what decays faster is lost beside 1
 
 
 def _linear_curve(

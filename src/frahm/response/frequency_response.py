@@ -16,6 +16,7 @@ from frahm.systems import System, as_system, detuning_of, excitation_frequency, 
 # What solves the exact equations is loaded when it is asked for: the slow flow does not wait for it.
 if TYPE_CHECKING:
     from frahm.harmonic_balance import PeriodicResponse
+    from frahm.harmonic_balance.found import Found
 
 METHODS = ("harmonic-balance", "slow-flow")
 _RESOLUTION = 1e-11
@@ -116,7 +117,7 @@ def periodic_responses(
     detuning: float | None = None,
     frequency: float | None = None,
     harmonics: int | str = "auto",
-) -> list[PeriodicResponse]:
+) -> Found[PeriodicResponse]:
     """All periodic responses of the exact equations at one excitation frequency, by ascending relative amplitude.
 
     Parameters
@@ -131,7 +132,8 @@ def periodic_responses(
     Returns
     -------
     list of PeriodicResponse
-        Responses with the period of the excitation; both of a mirrored pair are listed.
+        Responses with the period of the excitation; both of a mirrored pair are listed. Its attributes `searched` (a
+        sentence) and `unverified` (a tuple of sentences) say how far the search went.
 
     Raises
     ------

@@ -12,6 +12,7 @@ from frahm.case import Case
 from frahm.errors import ParameterError, check_choice, check_count, check_number, nearest
 from frahm.harmonic_balance import is_linear
 from frahm.harmonic_balance.detached import DetachedCurveEvent, detached_events
+from frahm.harmonic_balance.found import Found
 from frahm.harmonic_balance.loci import Locus, loci_at_frequency, loci_with_frequency
 from frahm.systems import (
     PARAMETERS,
@@ -97,7 +98,7 @@ def detached_curve_events(
     detuning: tuple[float, float] | None = None,
     frequency: tuple[float, float] | None = None,
     slices: int = 9,
-) -> list[DetachedCurveEvent]:
+) -> Found[DetachedCurveEvent]:
     """Births and merges of detached response curves as a parameter changes.
 
     Both are points at which the parameter is extreme along a curve of saddle-nodes: the response curve there is a
@@ -120,7 +121,8 @@ def detached_curve_events(
     Returns
     -------
     list of DetachedCurveEvent
-        Ascending in the parameter.
+        Ascending in the parameter. The attribute `searched` says in which window, over which values: an event outside
+        is not in the list.
 
     Raises
     ------

@@ -4,11 +4,12 @@ from collections import OrderedDict
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, given
 from hypothesis import strategies as st
 
 import frahm
 from frahm.case import TEMPLATE_KINDS, builtin_names, template_text
+from searching import at_most
 
 YAML = """
 name: 1e3 is text here
@@ -148,7 +149,7 @@ cases = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@at_most(60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=cases)
 def test_round_trip(tmp_path, data):
     case = frahm.load_case(data)

@@ -5,12 +5,13 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from frahm.continuation import ContinuationSettings, CurvePoint, between_points, follow_curve, newton, zero_curves
 from frahm.continuation.dense import factorise, solve_factorised
 from frahm.errors import Outcome, ParameterError
+from searching import at_most
 
 
 def circle(y):
@@ -85,7 +86,7 @@ def test_zero_curves_lie_on_the_curve_to_rounding():
     assert len(zero_curves(lambda a, b: np.where(a > 0, a**2 + b**2 - 1, np.nan), x, y)) == 1
 
 
-@settings(max_examples=60, deadline=None)
+@at_most(60)
 @given(st.integers(1, 12), st.integers(0, 10**6))
 def test_factorisation_solves_as_numpy_does(n, seed):
     rng = np.random.default_rng(seed)

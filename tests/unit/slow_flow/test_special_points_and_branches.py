@@ -5,11 +5,12 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from frahm.slow_flow import SlowFlow, boundary_curves, locate_points, slow_branches, slow_manifold
 from frahm.slow_flow.kernels import characteristic, equilibria, hurwitz, linear_parts
+from searching import at_most
 
 OMEGA = 2 * math.pi * 0.78
 XI1 = 2 * 0.0015 * OMEGA
@@ -45,7 +46,7 @@ def test_special_points_of_the_seed_paper(kappa, form, hopf, saddle):
         assert all(p.proven for p in points)
 
 
-@settings(max_examples=60, deadline=None)
+@at_most(60)
 @given(
     st.floats(0.5, 3.7),
     st.floats(-3, -1),
@@ -88,7 +89,7 @@ def test_detached_curve_of_the_seed_paper(kappa, xi2, detached):
     assert list(found.detached) == detached
 
 
-@settings(max_examples=40, deadline=None)
+@at_most(40)
 @given(
     st.floats(0.5, 3.7),
     st.floats(-3, -1),

@@ -1,0 +1,39 @@
+"""What a search for branches proves, what it only searches, and where it could not go on."""
+
+from __future__ import annotations
+
+from frahm.harmonic_balance.branches import Search, Track
+from frahm.harmonic_balance.describing import PER_DECADE
+from frahm.harmonic_balance.follow import CLOSED, LEFT
+
+
+def inventory_text(search: Search) -> str:
+    """What the search for branches proves and what it only searches."""
+    seeder, start = search.seeder, ""
+    dense = f"first-harmonic roots searched on a dense grid of {PER_DECADE} amplitudes a decade (not proven complete)"
+    if seeder.spring is not None:
+        start = "all first-harmonic roots, with every free third harmonic beside them, and near misses of further roots"
+        start += " (a detached curve within about 0.1 % of its birth can be missed)"
+        if seeder.table is not None:
+            start += f"; about other means than 0 from {dense}"
+    elif seeder.table is not None:
+        start = dense
+    else:
+        start = "first-harmonic solutions searched from a fixed spread of starts (not proven complete)"
+        if search.problem.odd and not seeder.buckled:
+            start += ", about the mean 0 only"
+    return (
+        f"Branches were followed from {start}. Not searched: responses whose period is a multiple of the excitation's"
+        " (period doublings are located, the doubled motions not followed), and responses without any first-harmonic"
+        " counterpart."
+    )
+
+
+def unfinished(tracks: list[Track]) -> list[str]:
+    """A sentence on every branch that could not be followed to its end."""
+    return [
+        f"Branch {number} could not be followed to its end; it stops near"
+        f" {track.frequency[0]:.6g}, {track.frequency[-1]:.6g} rad/s."
+        for number, track in enumerate(tracks)
+        if any(ending not in (LEFT, CLOSED) for ending in track.endings)
+    ]
