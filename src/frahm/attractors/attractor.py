@@ -32,8 +32,17 @@ class Attractor:
     frequency, detuning : float
         Of the excitation [rad/s].
     pipe_peak, relative_peak : float
-        Largest |x| of the output and |z| of the first element [m]. Where the motion does not repeat: over 1000 periods,
-        the median of eight such windows. Infinite for an escaping motion, NaN for one that cannot be integrated.
+        Largest |x| of the output and |z| of the first element [m] over the window kept. Where the motion does not
+        repeat, that is all of eight motions of 1000 periods each; a longer time may show a larger one, see
+        `pipe_peak_expected`. Infinite for an escaping motion, NaN for one that cannot be integrated.
+    pipe_peak_expected, relative_peak_expected : float
+        Level [m] that |x| or |z| exceeds once, on average, in `return_time`: that of a generalised Pareto distribution
+        fitted to the highest peaks of stretches of 50 periods. The peak itself for a periodic motion, NaN for an
+        unsettled one.
+    pipe_peak_expected_interval, relative_peak_expected_interval : tuple of float
+        95 % interval of it [m] (bootstrap).
+    return_time : float
+        10 000 periods of the forcing [s].
     pipe_rms, relative_rms : float
         Root mean square over the same windows [m].
     envelope, relative_envelope : tuple of float
@@ -49,9 +58,15 @@ class Attractor:
     lyapunov_interval : tuple of float
         95 % interval of it [1/s].
     basin_fraction : float
-        Share of the uniform sample of initial states that ends here [-].
+        Share of the uniform sample of initial states whose motions are here after the periods they were followed [-].
     basin_interval : tuple of float
-        95 % interval of it (Clopper-Pearson) [-].
+        95 % interval of it (Clopper-Pearson) [-]. Motions that had not settled by then may belong to any attractor: the
+        upper end counts them in.
+    escape_rate : float
+        Motions that leave for a periodic one, or escape, per motion and time [1/s]: of a chaotic set that does not
+        attract for ever. What is left of it after a time t is e^(-rate t). 0 for a periodic motion, NaN if unsettled.
+    escape_interval : tuple of float
+        95 % interval of it [1/s].
     representative_state : ndarray, shape (2n,)
         State (x_0, v_0, ...) on the attractor at phase 0 of the forcing [m, m/s].
     from_rest : bool
@@ -65,6 +80,11 @@ class Attractor:
     detuning: float
     pipe_peak: float
     relative_peak: float
+    pipe_peak_expected: float
+    pipe_peak_expected_interval: tuple[float, float]
+    relative_peak_expected: float
+    relative_peak_expected_interval: tuple[float, float]
+    return_time: float
     pipe_rms: float
     relative_rms: float
     envelope: tuple[float, float]
@@ -76,9 +96,16 @@ class Attractor:
     lyapunov_interval: tuple[float, float]
     basin_fraction: float
     basin_interval: tuple[float, float]
+    escape_rate: float
+    escape_interval: tuple[float, float]
     representative_state: Floats
     from_rest: bool
     outcome: Outcome
+
+    @property
+    def leaks(self) -> bool:
+        """Whether motions were seen to leave, so that this is a long transient and no attractor."""
+        return self.escape_interval[0] > 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,10 +162,21 @@ class AttractorSet(Sequence[Attractor]):
 
     @property
     def statement(self) -> str:
-        """What the sample says about attractors it has not met."""
-        return (
+        """What the sample says about attractors it has not met, and for which time its shares hold."""
+        missed = (
             f"An attractor with basin fraction above {100 * self.missed_below:.2g} % of the region was missed with "
             f"probability below 5 % ({self.samples} initial states)."
+        )
+        return " ".join([missed, *(self._leak(attractor) for attractor in self if attractor.leaks)])
+
+    def _leak(self, attractor: Attractor) -> str:
+        thousand = 2 * np.pi / self.frequency * 1000
+        rates = np.array([attractor.escape_rate, *attractor.escape_interval])
+        rate, low, high = -100 * np.expm1(-rates * thousand)
+        return (
+            f"The {attractor.kind} motion with a pipe peak of {attractor.pipe_peak:.4g} m is left in the end: in 1000 "
+            f"periods by {rate:.2g} % of the motions on it (95 % interval {low:.2g} to {high:.2g} %). Its share is "
+            f"that after {self.periods} periods."
         )
 
     def to_dataset(self) -> xr.Dataset:
@@ -176,25 +214,37 @@ class AttractorSet(Sequence[Attractor]):
 _NUMBERS = {
     "pipe_peak": ("largest displacement of the pipe", "m"),
     "relative_peak": ("largest displacement of the first element", "m"),
+    "pipe_peak_expected": ("displacement of the pipe exceeded once in the return time", "m"),
+    "relative_peak_expected": ("displacement of the first element exceeded once in the return time", "m"),
+    "return_time": ("return time", "s"),
     "pipe_rms": ("root mean square displacement of the pipe", "m"),
     "relative_rms": ("root mean square displacement of the first element", "m"),
     "period_multiple": ("periods of the forcing after which the motion repeats, 0 if it does not", "1"),
     "beat_period": ("period of the strongest modulation", "s"),
     "lyapunov": ("largest Lyapunov exponent", "1/s"),
     "basin_fraction": ("share of the initial states that ends here", "1"),
+    "escape_rate": ("motions that leave, per motion and time", "1/s"),
     "from_rest": ("whether the motion from rest ends here", "1"),
 }
 _PAIRS = {
+    "pipe_peak_expected_interval": (
+        "pipe_peak_expected_interval", "95 % interval of the displacement of the pipe exceeded once", "m",
+    ),
+    "relative_peak_expected_interval": (
+        "relative_peak_expected_interval", "95 % interval of the displacement of the first element exceeded once", "m",
+    ),
     "envelope": ("envelope", "smallest and largest peak of a period of the pipe", "m"),
     "relative_envelope": ("relative_envelope", "smallest and largest peak of a period of the first element", "m"),
     "lyapunov_interval": ("lyapunov_interval", "95 % interval of the largest Lyapunov exponent", "1/s"),
     "basin_interval": ("basin_interval", "95 % interval of the basin fraction", "1"),
-}
+    "escape_interval": ("escape_interval", "95 % interval of the rate at which motions leave", "1/s"),
+}  # fmt: skip
 
 
-def clopper_pearson(hits: int, samples: int) -> tuple[float, float]:
-    """95 % interval of a probability from `hits` out of `samples`."""
+def clopper_pearson(hits: int, samples: int, doubtful: int = 0) -> tuple[float, float]:
+    """95 % interval of a probability from `hits` out of `samples`, of which `doubtful` more may be hits, too."""
     tail = (1 - CONFIDENCE) / 2
     low = float(beta.ppf(tail, hits, samples - hits + 1)) if hits else 0.0
-    high = float(beta.ppf(1 - tail, hits + 1, samples - hits)) if hits < samples else 1.0
+    most = hits + doubtful
+    high = float(beta.ppf(1 - tail, most + 1, samples - most)) if most < samples else 1.0
     return low, high

@@ -2,7 +2,8 @@
 
 Two long motions are on the same attractor if each comes back, again and again, to where the other has been. A motion
 that lingers near the ghost of an attractor does so too, for a while: a cloud is taken for an attractor only after eight
-motions started on it have stayed there for thousands of periods.
+of sixteen motions started on it have stayed there for thousands of periods. A chaotic set may leak all the same: those
+that left are counted.
 """
 
 from __future__ import annotations
@@ -14,12 +15,15 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from frahm.arrays import Floats, frozen
+from frahm.attractors.modulation import Exponent, lyapunov
 from frahm.attractors.orbits import Orbit
 from frahm.attractors.stroboscope import Stroboscope
 
 MEMBERS = 8
 STAY, WATCH = 1500, 1000  # periods a cloud must hold its members before it is believed, and while they are watched
-_STATIONARY, _STAYED, INSIDE = 0.8, 0.5, 0.9  # shares of strobes that must lie where others have been
+STRETCH = 50  # periods over each of which the peak is kept
+_STARTED = 2 * MEMBERS
+_STATIONARY, BELONGS, INSIDE = 0.8, 0.5, 0.9  # shares of strobes that must lie where others have been
 _LEAST_REACH = 0.25  # in standard deviations of the strobes: clouds nearer to each other than this count as one
 _QUERIES = 100  # strobes of a motion that are looked at
 _STRETCHES, _STRETCH, _HIGHEST = 48, 251, 17  # of a drift: stretches, their periods (a prime), strobes at their ends
@@ -39,23 +43,34 @@ class Cloud:
         Distance, over `scale`, within which a state counts as being where the attractor has been.
     members : ndarray, shape (8, K, 2n)
         Strobes of the eight motions that confirmed it.
-    seen : ndarray, shape (8, 6)
-        What they showed over the last K periods, see `Glimpse.seen`.
+    stretches : ndarray, shape (8, S, 6)
+        What they showed over each of the stretches of 50 periods that make up the last K, see `Glimpse.seen`.
+    exponent : Exponent
+        Largest Lyapunov exponent on it.
+    followed, left : int
+        Periods that the sixteen motions started on it were followed in all, and how many of them left for an orbit.
     """
 
     scale: Floats
     tree: cKDTree
     reach: float
     members: Floats
-    seen: Floats
+    stretches: Floats
+    exponent: Exponent
+    followed: int
+    left: int
+
+    @property
+    def seen(self) -> Floats:
+        """What the eight motions showed over the last K periods, shape (8, 6), see `Glimpse.seen`."""
+        each = self.stretches
+        peaks, least, square = np.max(each, axis=1), np.min(each, axis=1), np.mean(each**2, axis=1)
+        rms = np.sqrt(square)
+        return np.stack([peaks[:, 0], least[:, 1], rms[:, 2], peaks[:, 3], least[:, 4], rms[:, 5]], axis=1)
 
     def share(self, strobes: Floats) -> Floats:
         """Share of the strobes (N, K, 2n) of each motion that lie where the attractor has been, shape (N,)."""
         return _share(self.tree, self.scale, self.reach, strobes)
-
-    def contains(self, strobes: Floats) -> np.ndarray:
-        """Which of the motions with these strobes (N, K, 2n) are on the attractor."""
-        return np.asarray(self.share(strobes) >= INSIDE)
 
 
 def looks_stationary(strobes: Floats) -> bool:
@@ -83,20 +98,33 @@ def _covers(here: Floats, there: Floats) -> bool:
 
 
 def confirmed(strobe: Stroboscope, strobes: Floats, orbits: Sequence[Orbit]) -> Cloud | None:
-    """Cloud of the attractor a motion with these strobes (K, 2n) is on, or None if motions started there leave it."""
-    starts = strobes[np.linspace(len(strobes) // 2, len(strobes) - 1, MEMBERS).astype(int)]
+    """Cloud of the attractor a motion with these strobes (K, 2n) is on, or None if most motions started there leave."""
+    starts = strobes[np.linspace(len(strobes) // 2, len(strobes) - 1, _STARTED).astype(int)]
     stayed = strobe.run(starts, STAY)
-    watched = strobe.run(stayed.states, WATCH, window=WATCH, strobes=WATCH)
-    if np.any(stayed.codes) or np.any(watched.codes):
-        return None
-    if any(np.any(orbit.contains(watched.states)) for orbit in orbits):
-        return None
+    good = stayed.codes == 0
+    states, stretches, later = stayed.states, [], []
+    for _ in range(WATCH // STRETCH):
+        seen = strobe.run(states, STRETCH, window=STRETCH, strobes=STRETCH)
+        good &= seen.codes == 0
+        states = np.where(good[:, None], seen.states, starts)  # what is lost is not carried on into infinity
+        stretches.append(seen.seen)
+        later.append(seen.strobes)
+    watched = np.concatenate(later, axis=1)
     tree, scale, reach = _tree(strobes, 2.0, 0.95)
-    if np.any(_share(tree, scale, reach, watched.strobes[:, -len(strobes) // 2 :]) < _STAYED):
+    for orbit in orbits:
+        good &= ~orbit.contains(states)
+    left = int(np.count_nonzero(~good))
+    good[good] = _share(tree, scale, reach, watched[good, -len(strobes) // 2 :]) >= BELONGS
+    on = np.flatnonzero(good)[:MEMBERS]
+    if len(on) < MEMBERS:
         return None
-    points = np.concatenate([strobes, watched.strobes.reshape(-1, strobes.shape[1])])
+    members = frozen(watched[on])
+    points = np.concatenate([strobes, members.reshape(-1, strobes.shape[1])])
     tree, scale, reach = _tree(points, 3.0, 0.99)
-    return Cloud(frozen(scale), tree, reach, watched.strobes, watched.seen)
+    return Cloud(
+        frozen(scale), tree, reach, members, frozen(np.stack(stretches, axis=1)[on]),
+        lyapunov(strobe, members[:, -1]), _STARTED * (STAY + WATCH), left,
+    )  # fmt: skip
 
 
 def _tree(points: Floats, factor: float, quantile: float) -> tuple[cKDTree, Floats, float]:

@@ -10,8 +10,9 @@ import numpy as np
 
 from frahm.arrays import Floats, frozen
 from frahm.attractors.attractor import Attractor, AttractorSet, clopper_pearson
-from frahm.attractors.clouds import Cloud
-from frahm.attractors.modulation import UNKNOWN, beat_frequency, lyapunov
+from frahm.attractors.clouds import STRETCH, Cloud
+from frahm.attractors.extremes import DURATION, Level, expected_peak, poisson_interval
+from frahm.attractors.modulation import beat_frequency
 from frahm.attractors.orbits import Orbit
 from frahm.attractors.regions import Region, checked_region, default_region, sample_region
 from frahm.attractors.seeds import seed_states
@@ -47,9 +48,11 @@ def find_attractors(
     Motions are started from a scrambled Sobol sample of the region, from rest, beside every unstable periodic response,
     and from the jumps of the slow manifold; stable periodic responses are known from harmonic balance. A motion inside
     the ball around a stable orbit in which the exact equations contract (a radius verified by sampled iterations) is
-    settled; one that keeps coming back to where it has been, and from where eight motions have not left within 2500
-    periods, is on a modulated or chaotic attractor. Modulated attractors whose peaks and rms agree within 2 %
-    of the peak are one: a beat can lock to the forcing in several ways.
+    settled; one that nearly repeats, after up to 64 periods, is refined by Newton's method. One that keeps coming back
+    to where it has been, and from where eight of sixteen motions have not left within 2500 periods, is on a modulated or
+    chaotic set. As motions leave some chaotic sets in the end, those on one are followed to the last period: fractions
+    are those after `periods` periods, and the rate of leaving is told. Modulated attractors whose peaks and rms agree
+    within 2 % of the peak are one: a beat can lock to the forcing in several ways.
 
     Parameters
     ----------
@@ -66,7 +69,7 @@ def find_attractors(
     seed : int
         Of the sample: the same seed gives the same answer on any number of threads.
     periods : int
-        Periods after which a motion that has not settled is called unsettled.
+        Periods after which basins are stated, and a motion that has not settled is called unsettled.
     workers : int, optional
         Threads; one per core by default.
 
@@ -144,10 +147,12 @@ def describe(
 ) -> list[tuple[list[int], Attractor]]:
     """Attractors with the labels each stands for, the largest pipe peak first; the unsettled ones have no label."""
     total = int(np.count_nonzero(counted))
+    open_ended = np.array([outcome is Outcome.NOT_CONVERGED for outcome in settled.outcomes], dtype=bool)
+    doubtful = int(np.count_nonzero(open_ended & counted))
     found: list[tuple[list[int], Attractor]] = []
     for group in _groups(settling.known):
         hits = int(np.count_nonzero(np.isin(settled.labels, group) & counted))
-        chance = _chance(hits, total)
+        chance = _chance(hits, total, doubtful) | _escape(settling, settled, counted, group)
         first = settling.known[group[0]]
         if isinstance(first, Orbit):
             looks = _orbit_looks(settling.strobe, first)
@@ -184,8 +189,23 @@ def _where(strobe: Stroboscope) -> dict[str, Any]:
     return {"frequency": strobe.frequency, "detuning": float(detuning_of(strobe.system, strobe.frequency))}
 
 
-def _chance(hits: int, total: int) -> dict[str, Any]:
-    return {"basin_fraction": hits / total if total else float("nan"), "basin_interval": clopper_pearson(hits, total)}
+def _chance(hits: int, total: int, doubtful: int = 0) -> dict[str, Any]:
+    fraction = hits / total if total else float("nan")
+    return {"basin_fraction": fraction, "basin_interval": clopper_pearson(hits, total, doubtful)}
+
+
+def _escape(settling: Settling, settled: Settled, counted: np.ndarray, group: list[int]) -> dict[str, Any]:
+    """Rate at which motions leave a set that is no orbit, from those of the sample and those that confirmed it."""
+    clouds = [item for item in (settling.known[i] for i in group) if isinstance(item, Cloud)]
+    if not clouds:
+        return {"escape_rate": 0.0, "escape_interval": (0.0, 0.0)}
+    held = np.flatnonzero(np.isin(settled.held, group) & counted)
+    on_orbit = [label != UNLABELLED and isinstance(settling.known[label], Orbit) for label in settled.labels[held]]
+    escaped = [settled.outcomes[i] is Outcome.DIVERGED for i in held]
+    left = int(np.count_nonzero(np.logical_or(on_orbit, escaped))) + sum(cloud.left for cloud in clouds)
+    periods = int(np.sum((settled.periods - settled.held_from)[held])) + sum(cloud.followed for cloud in clouds)
+    exposure = periods * settling.strobe.period
+    return {"escape_rate": left / exposure, "escape_interval": poisson_interval(left, exposure)}
 
 
 def _orbit_looks(strobe: Stroboscope, orbit: Orbit) -> dict[str, Any]:
@@ -195,6 +215,7 @@ def _orbit_looks(strobe: Stroboscope, orbit: Orbit) -> dict[str, Any]:
     return {
         "kind": "periodic",
         **_sizes(seen),
+        **_expected(strobe, seen[:, [0]], seen[:, [3]]),
         "period_multiple": p,
         "beat_period": float("nan"),
         "frequencies": (strobe.frequency / p,),
@@ -207,11 +228,13 @@ def _orbit_looks(strobe: Stroboscope, orbit: Orbit) -> dict[str, Any]:
 
 def _cloud_looks(strobe: Stroboscope, clouds: Sequence[Cloud], exponents: bool) -> dict[str, Any]:
     members = clouds[0].members
-    exponent = lyapunov(strobe, members[:, -1]) if exponents else UNKNOWN
+    exponent = clouds[0].exponent
     beat = beat_frequency(strobe, members)
+    stretches = np.concatenate([cloud.stretches for cloud in clouds])
     return {
         "kind": "chaotic" if exponent.chaotic else "quasi-periodic",
         **_sizes(np.concatenate([cloud.seen for cloud in clouds])),
+        **_expected(strobe, stretches[:, :, 0], stretches[:, :, 3]),
         "period_multiple": 0,
         "beat_period": 2 * np.pi / beat,
         "frequencies": (strobe.frequency, beat),
@@ -224,16 +247,26 @@ def _cloud_looks(strobe: Stroboscope, clouds: Sequence[Cloud], exponents: bool) 
 
 def _sizes(seen: Floats) -> dict[str, Any]:
     """Peaks, rms and envelopes from windows, see `Glimpse.seen`."""
-    least, most, middle = np.min(seen, axis=0), np.max(seen, axis=0), np.median(seen, axis=0)
+    least, most = np.min(seen, axis=0), np.max(seen, axis=0)
     rms = np.sqrt(np.mean(seen**2, axis=0))
     return {
-        "pipe_peak": float(middle[0]),
-        "relative_peak": float(middle[3]),
+        "pipe_peak": float(most[0]),
+        "relative_peak": float(most[3]),
         "pipe_rms": float(rms[2]),
         "relative_rms": float(rms[5]),
         "envelope": (float(least[1]), float(most[0])),
         "relative_envelope": (float(least[4]), float(most[3])),
     }
+
+
+def _expected(strobe: Stroboscope, pipe: Floats, relative: Floats) -> dict[str, Any]:
+    """What the peaks (m, S) of consecutive stretches lead one to expect; one alone is that of a motion that repeats."""
+    found: dict[str, Any] = {"return_time": DURATION * strobe.period}
+    for name, peaks in (("pipe_peak", pipe), ("relative_peak", relative)):
+        once = float(peaks[0, 0])
+        level = expected_peak(peaks, DURATION / STRETCH) if peaks.size > 1 else Level(once, (once, once))
+        found |= {f"{name}_expected": level.value, f"{name}_expected_interval": level.interval}
+    return found
 
 
 def _unsettled(strobe: Stroboscope, settled: Settled, counted: np.ndarray, total: int) -> list[Attractor]:
@@ -244,7 +277,7 @@ def _unsettled(strobe: Stroboscope, settled: Settled, counted: np.ndarray, total
         members = np.array([i for i in np.flatnonzero(unlabelled) if settled.outcomes[i] is reason], dtype=int)
         if not members.size:
             continue
-        seen = np.full((1, 6), np.inf if reason is Outcome.DIVERGED else nan)
+        seen, unknown = np.full((1, 6), np.inf if reason is Outcome.DIVERGED else nan), np.full((1, 1), nan)
         if reason is Outcome.NOT_CONVERGED:
             seen = np.max(strobe.run(settled.states[members], _WATCH, window=_WATCH).seen, axis=0, keepdims=True)
         lost.append(
@@ -252,12 +285,15 @@ def _unsettled(strobe: Stroboscope, settled: Settled, counted: np.ndarray, total
                 kind="unsettled",
                 **_where(strobe),
                 **_sizes(seen),
+                **_expected(strobe, unknown, unknown),
                 period_multiple=0,
                 beat_period=nan,
                 frequencies=(strobe.frequency,),
                 lyapunov=nan,
                 lyapunov_interval=(nan, nan),
                 **_chance(members.size, total),
+                escape_rate=nan,
+                escape_interval=(nan, nan),
                 representative_state=frozen(settled.states[members[0]]),
                 from_rest=False,
                 outcome=reason,

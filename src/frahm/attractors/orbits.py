@@ -28,8 +28,10 @@ _FIRST, _RATIO, _LARGEST = 0.01, 1.6, 3.0  # radii tried, in sizes of the orbit
 _DIRECTIONS = 64
 _PATIENCE, _MOST_TURNS = 0.25, 64  # turns over which the norm must shrink, in times of decay
 _MARGIN = 0.1  # share of the linear contraction that must be left
-_WELL_CONDITIONED = 1e6
+_WELL_CONDITIONED, _BLIND = 1e6, 1e12  # condition numbers: of eigenvectors that can be trusted, of a norm that cannot
 _SMALLEST = 1e-6  # radius, in sizes of the orbit, that the linear theory alone may claim
+_DIFFERENCE = 1e-5  # of the size of a motion: steps of central differences, of relative error about 1e-7 here
+_ONE = 1e-6  # in sizes of the orbit: states of refined orbits nearer than this are one state
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,9 +43,13 @@ class Ball:
     radius: float
     verified: bool
 
+    def distance(self, states: Floats) -> Floats:
+        """Distance of states (N, 2n) from the centre, in the norm of the ball over its radius."""
+        return np.asarray(np.linalg.norm((states - self.centre) @ self.root.T, axis=1) / self.radius)
+
     def contains(self, states: Floats) -> np.ndarray:
         """Which of the states (N, 2n) lie inside."""
-        return np.asarray(np.sum(((states - self.centre) @ self.root.T) ** 2, axis=1) <= self.radius**2)
+        return self.distance(states) <= 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +64,14 @@ class Orbit:
     def multiple(self) -> int:
         """How many periods of the forcing the orbit takes."""
         return len(self.states)
+
+    def passes(self, state: Floats, size: Floats) -> bool:
+        """Whether the refined orbit through `state` is this one; `size` (2n,) as of `orbit_size`."""
+        return bool(np.min(np.max(np.abs((self.states - state) / size), axis=1)) < _ONE)
+
+    def distance(self, states: Floats) -> Floats:
+        """Distance of states (N, 2n) from the orbit at whole periods, in the norms of the balls over their radii."""
+        return np.min([ball.distance(states) for ball in self.balls], axis=0)
 
     def contains(self, states: Floats) -> np.ndarray:
         """Which of the states are settling onto the orbit."""
@@ -78,9 +92,17 @@ def monodromy_along(system: System, span: float, displacements: Floats, velociti
     with np.errstate(all="ignore"):  # along a violently unstable motion the product may overflow
         for k in range(_TAYLOR, 0, -1):
             steps = np.eye(2 * n) + exponent @ steps / k
-        Phi = functools.reduce(lambda product, step: step @ product, steps, np.eye(2 * n))
+        Phi = _product(steps)
     order = np.arange(2 * n).reshape(2, n).T.ravel()
     return np.asarray(Phi[np.ix_(order, order)])
+
+
+def _product(steps: Floats) -> Floats:
+    """Product (k, k) of maps (m, k, k), the first applied first, by pairs."""
+    while len(steps) > 1:
+        odd = steps[len(steps) & ~1 :]
+        steps = np.concatenate([steps[1::2] @ steps[: len(steps) & ~1 : 2], odd])
+    return np.asarray(steps[0])
 
 
 def points_needed(system: System, span: float, reach: Floats) -> int:
@@ -92,41 +114,58 @@ def points_needed(system: System, span: float, reach: Floats) -> int:
 
 def orbit_at(strobe: Stroboscope, state: Floats, multiple: int = 1) -> Orbit | None:
     """Orbit through `state`, or None if its monodromy matrix does not say that it is stable."""
-    centres = [state]
-    if multiple > 1:
-        centres += list(strobe.run(state[None], multiple - 1, strobes=multiple - 1, tolerance=1e-12).strobes[0])
-    size = orbit_size(strobe, np.array(centres))
-    balls = []
-    multipliers = np.zeros(0, dtype=complex)
-    for centre in centres:
-        turn = _turn(strobe, centre, multiple)
-        if turn is None:
-            return None
-        Phi = turn[1]
-        multipliers = np.linalg.eigvals(Phi).astype(complex)
-        if not np.max(np.abs(multipliers)) < 1:
-            return None
-        balls.append(_ball(strobe, centre, Phi, size, multiple))
+    turn = _turn(strobe, state, multiple)
+    if turn is None:
+        return None
+    multiple = _shortest(strobe, np.array([state, *turn.states[:-1]]))
+    centres = np.array([state, *turn.states[: multiple - 1]])
+    maps = [turn.product(start, multiple) for start in range(multiple)]
+    if not all(spectral_radius(Phi) < 1 for Phi in maps):
+        return None
+    size = orbit_size(strobe, centres)
+    balls = tuple(_ball(strobe, centre, Phi, size, multiple) for centre, Phi in zip(centres, maps, strict=True))
+    multipliers = np.linalg.eigvals(maps[0]).astype(complex)
     multipliers = multipliers[np.argsort(-np.abs(multipliers))]
-    return Orbit(frozen(np.array(centres)), tuple(balls), frozen(multipliers, complex))
+    return Orbit(frozen(centres), balls, frozen(multipliers, complex))
 
 
-def refined(strobe: Stroboscope, state: Floats, multiple: int) -> Floats | None:
-    """Fixed point of the map over `multiple` periods near `state` by Newton's method, or None."""
+def spectral_radius(Phi: Floats) -> float:
+    """Largest modulus of the eigenvalues; infinite where the matrix is."""
+    return float(np.max(np.abs(np.linalg.eigvals(Phi)))) if np.all(np.isfinite(Phi)) else np.inf
+
+
+def _shortest(strobe: Stroboscope, states: Floats) -> int:
+    """Least number of periods, a divisor of their number, after which the states (p, 2n) of an orbit repeat."""
+    size = orbit_size(strobe, states)
+    for multiple in range(1, len(states)):
+        if len(states) % multiple == 0 and np.max(np.abs(np.roll(states, -multiple, axis=0) - states) / size) < _ONE:
+            return multiple
+    return len(states)
+
+
+def refined(strobe: Stroboscope, state: Floats, multiple: int) -> tuple[Floats, Floats] | None:
+    """Fixed point (2n,) near `state` of the map over `multiple` periods, and its derivative (2n, 2n), or None.
+
+    Newton's method; the derivative is that of central differences, which cost no more than eight motions.
+    """
     size = orbit_size(strobe, state[None])
+    steps = _DIFFERENCE * np.diag(size)
     change = np.inf
     for _ in range(8):
-        turn = _turn(strobe, state, multiple)
-        if turn is None:
+        around = np.concatenate([state[None], state + steps, state - steps])
+        turned = strobe.run(around, multiple, tolerance=1e-12)
+        if np.any(turned.codes):
             return None
+        ahead, behind = np.split(turned.states[1:], 2)
+        Phi = (ahead - behind).T / (2 * np.diag(steps))
         try:
-            step = np.linalg.solve(turn[1] - np.eye(state.size), turn[0] - state)
+            step = np.linalg.solve(Phi - np.eye(state.size), turned.states[0] - state)
         except np.linalg.LinAlgError:
             return None
         last, change = change, float(np.max(np.abs(step) / size))
         state = state - step
         if change < 1e-9:
-            return state
+            return state, Phi
         if not change < max(0.5, 2 * last):
             return None
     return None
@@ -145,7 +184,7 @@ def unstable_directions(strobe: Stroboscope, state: Floats) -> Floats:
     turn = _turn(strobe, state, 1)
     if turn is None:
         return np.zeros((0, state.size))
-    values, vectors = np.linalg.eig(turn[1])
+    values, vectors = np.linalg.eig(turn.maps[0])
     size = orbit_size(strobe, state[None])
     found = []
     for value, vector in zip(values, vectors.T, strict=True):
@@ -155,8 +194,21 @@ def unstable_directions(strobe: Stroboscope, state: Floats) -> Floats:
     return np.array(found).reshape(-1, state.size)
 
 
-def _turn(strobe: Stroboscope, state: Floats, multiple: int) -> tuple[Floats, Floats] | None:
-    """Image of a state under the map over `multiple` periods and the map's derivative there; None if out of reach."""
+@dataclass(frozen=True, eq=False)
+class _Turn:
+    """A motion over p periods: states (p, 2n) at the end of each, and the derivative (p, 2n, 2n) of each one's map."""
+
+    states: Floats
+    maps: Floats
+
+    def product(self, start: int, count: int) -> Floats:
+        """Derivative of the map over `count` periods of an orbit, from its period `start` on."""
+        with np.errstate(all="ignore"):  # as in `monodromy_along`
+            return _product(np.roll(self.maps[:count], -start, axis=0))
+
+
+def _turn(strobe: Stroboscope, state: Floats, multiple: int) -> _Turn | None:
+    """Motion from a state over `multiple` periods and its linearisation; None if out of reach."""
     system, size = strobe.system, orbit_size(strobe, state[None])
     per_period = points_needed(system, strobe.period, 1.5 * size[0::2]) - 1
     if not per_period < _MOST_POINTS:
@@ -167,9 +219,11 @@ def _turn(strobe: Stroboscope, state: Floats, multiple: int) -> tuple[Floats, Fl
     )  # fmt: skip
     if not history.outcome.ok:
         return None
-    image = np.column_stack([history.x[-1], history.v[-1]]).ravel()
-    Phi = monodromy_along(system, multiple * strobe.period, history.x, history.v)
-    return (image, Phi) if np.all(np.isfinite(Phi)) else None
+    ends = slice(per_period, None, per_period)
+    states = np.stack([history.x[ends], history.v[ends]], axis=-1).reshape(multiple, -1)
+    pieces = [slice(k * per_period, (k + 1) * per_period + 1) for k in range(multiple)]
+    maps = np.array([monodromy_along(system, strobe.period, history.x[at], history.v[at]) for at in pieces])
+    return _Turn(states, maps) if np.all(np.isfinite(maps)) else None
 
 
 def _slopes(system: System, x: Floats, v: Floats) -> Floats:
@@ -191,13 +245,18 @@ def _slopes(system: System, x: Floats, v: Floats) -> Floats:
 
 def _ball(strobe: Stroboscope, centre: Floats, Phi: Floats, size: Floats, multiple: int) -> Ball:
     """Ball as large as the sampled shells allow, found by doubling or halving its radius."""
-    rho = float(np.max(np.abs(np.linalg.eigvals(Phi))))
+    rho = spectral_radius(Phi)
     turns = int(np.clip(np.ceil(_PATIENCE / (1 - rho)), 1, _MOST_TURNS))
     limit = 1 - _MARGIN * (1 - rho**turns)
+    # what linear theory alone may claim: the adapted norm may be next to blind in some direction
+    least = Ball(frozen(centre), frozen(np.diag(1 / size)), _SMALLEST, verified=False)
     root = _adapted_root(Phi * size / size[:, None], rho)
+    if not np.linalg.cond(root) < _BLIND:
+        return least
     to_states = np.linalg.inv(root) * size[:, None]
     root = root / size
-    directions = _directions(len(size)) @ to_states.T
+    count = int(np.clip(4 * _DIRECTIONS // multiple, _DIRECTIONS // 4, _DIRECTIONS))
+    directions = _directions(len(size))[:count] @ to_states.T
 
     def shrinks(radius: float) -> bool:
         ended = strobe.run(centre + radius * directions, turns * multiple)
@@ -214,23 +273,35 @@ def _ball(strobe: Stroboscope, centre: Floats, Phi: Floats, size: Floats, multip
         while radius > _SMALLEST and not shrinks(radius):
             radius /= _RATIO
         verified = radius > _SMALLEST and shrinks(radius / _RATIO)
-    return Ball(frozen(centre), frozen(root), max(radius / _RATIO, _SMALLEST), verified)
+    return Ball(frozen(centre), frozen(root), radius / _RATIO, verified) if verified else least
 
 
 def _adapted_root(Phi: Floats, rho: float) -> Floats:
-    """Upper triangular R, |R| = 1, such that |R Phi y| <= about rho |R y|.
+    """Upper triangular R, |R| = 1, such that |R Phi y| <= c |R y|, c being rho or, at worst, (1 + rho) / 2.
 
-    R^T R = sum of l l^* over the left eigenvectors l; where these are all but dependent, the solution P of the
-    discrete Lyapunov equation Phi^T P Phi / rho - P = -1.
+    |R y| = |M y| where the rows of M are the left eigenvectors. Where these are all but dependent, Phi = Q T Q^* with T
+    upper triangular (Schur), and M = D^-1 Q^* with a diagonal D that shrinks what T has above its diagonal. R comes
+    from M without forming M^T M, whose rounding errors could make it indefinite.
     """
     _, vectors = np.linalg.eig(Phi)
     if np.linalg.cond(vectors) < _WELL_CONDITIONED:
-        left = np.linalg.inv(vectors)
-        P = (left.conj().T @ left).real
+        M = np.linalg.inv(vectors)
     else:
-        P = scipy.linalg.solve_discrete_lyapunov(Phi.T / np.sqrt(max(rho, 1e-3)), np.eye(len(Phi)))
-    root = np.linalg.cholesky((P + P.T) / 2).T
+        T, Q = scipy.linalg.schur(Phi.astype(complex), output="complex")
+        M = Q.conj().T / _shrinking(T, (1 - rho) / 2)[:, None]
+    root = np.linalg.qr(np.concatenate([M.real, M.imag])).R
     return np.asarray(root / np.linalg.norm(root, 2))
+
+
+def _shrinking(T: Complexes, left: float) -> Floats:
+    """Diagonal D such that D^-1 T D has nothing above its diagonal whose norm exceeds `left`."""
+    size = len(T)
+    D = np.ones(size)
+    for j in range(1, size):
+        above = np.abs(T[:j, j])
+        with np.errstate(divide="ignore"):
+            D[j] = min(D[j - 1], float(np.min(left / size * D[:j] / above)))
+    return D
 
 
 @functools.cache

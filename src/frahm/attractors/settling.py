@@ -1,21 +1,25 @@
-"""Which attractor each of many states ends on, with early classification.
+"""Which attractor each of many states ends on.
 
-States are carried on in stretches. After each, those inside the ball of a stable orbit are done: that is where most
-periods are saved. The others are held against the clouds of the attractors already known and, after two windows in
-which they show nothing new, are taken as evidence of an attractor not known yet. What has not settled in the end is
+States are carried on in stretches, and a motion is judged by its own convergence first. Those inside the ball of a
+stable orbit are done: that is where most periods are saved. Those that nearly repeat are refined by Newton's method and
+compared with the orbits known. Others show, after two windows in which they cover nothing new, an attractor that is no
+orbit. As a chaotic motion can still end on an orbit, being where a chaotic set has been settles nothing before the
+periods allowed are over; how many motions leave such a set on the way is kept. What has not settled in the end is
 called unsettled.
 """
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.attractors.clouds import Cloud, confirmed, drift, looks_stationary
-from frahm.attractors.orbits import Orbit, orbit_at, orbit_size, refined
+from frahm.attractors.clouds import BELONGS, INSIDE, Cloud, confirmed, drift, looks_stationary
+from frahm.attractors.orbits import Orbit, orbit_at, orbit_size, refined, spectral_radius
+from frahm.attractors.repetition import HIGHEST_MULTIPLE, repeats
 from frahm.attractors.stroboscope import Stroboscope
 from frahm.errors import Outcome
 
@@ -23,11 +27,10 @@ START = (20, 30, 50, 50, 50)  # periods of the first stretches: only balls are a
 BLOCK, WINDOW = 100, 3  # periods of a further stretch, stretches of a window
 _GROUP = 4096  # coordinates carried at a time: bounds the memory
 _FAR = 1e9  # times the size of everything seen at the start
-_ATTEMPTS = 8  # motions per call that may be tried as evidence of an attractor not known yet
-_REST = 3 * BLOCK  # periods after which a motion that was tried in vain may be tried again
+_ATTEMPTS = 8  # motions per call that may be tried as evidence of an attractor that is no orbit
+_AGAIN = 1.5  # times the periods at which it was tried: when a motion may be tried again
 _CONSERVATIVE = 1e-9  # rate of contraction, over Omega, that rounding cannot tell from none
-_HIGHEST_MULTIPLE = 16
-_NEARLY_PERIODIC, _SAME = 0.02, 0.1  # distance of strobes, in sizes of the motion
+_UNSTABLE = 1.01  # largest multiplier above which differences are enough to say that an orbit is not stable
 UNLABELLED = -1
 
 
@@ -45,17 +48,56 @@ class Settled:
         Last states [m, m/s].
     periods : ndarray, shape (N,)
         Periods each was carried on.
+    held : ndarray of int, shape (N,)
+        Index of the first cloud each was seen in, -1 for none.
+    held_from : ndarray, shape (N,)
+        Periods after which it was seen there.
     """
 
     labels: np.ndarray
     outcomes: list[Outcome]
     states: Floats
     periods: np.ndarray
+    held: np.ndarray
+    held_from: np.ndarray
 
     @property
     def interrupted(self) -> bool:
         """Whether an interruption left states without label."""
         return Outcome.INTERRUPTED in self.outcomes
+
+
+class _Nature(enum.IntEnum):
+    """What the strobes of a motion have shown so far."""
+
+    OPEN = 0
+    ORBIT = 1  # it nearly repeats, and Newton's method finds a stable orbit there
+    BEAT = 2  # it nearly repeats, and there is no such orbit
+
+
+@dataclass(eq=False)
+class _Watched:
+    """Motions still followed: which of the N states, their last strobes (k, K, 2n), and what was tried with each."""
+
+    active: np.ndarray
+    history: Floats
+    nature: np.ndarray
+    tried: np.ndarray
+
+    def keep(self, left: np.ndarray) -> None:
+        """Go on with the motions of the states `left` alone."""
+        kept = np.isin(self.active, left)
+        self.active, self.history = self.active[kept], self.history[kept]
+        self.nature, self.tried = self.nature[kept], self.tried[kept]
+
+    def due(self, periods: np.ndarray) -> list[int]:
+        """States whose turn to be tried has come; a trial is worth repeating only after half as long again."""
+        return [int(i) for i, tried in zip(self.active, self.tried, strict=True) if periods[i] >= _AGAIN * tried]
+
+    def place(self, state: int) -> int | None:
+        """Where a state stands among those still followed."""
+        at = int(np.searchsorted(self.active, state))
+        return at if at < len(self.active) and self.active[at] == state else None
 
 
 @dataclass(eq=False)
@@ -93,7 +135,10 @@ class Settling:
         """Label states (N, 2n); an interruption, or `resume` being false after one, leaves the rest unlabelled."""
         count = len(states)
         waiting = Outcome.NOT_CONVERGED if resume else Outcome.INTERRUPTED
-        result = Settled(np.full(count, UNLABELLED), [waiting] * count, np.array(states), np.zeros(count, dtype=int))
+        result = Settled(
+            np.full(count, UNLABELLED), [waiting] * count, np.array(states), np.zeros(count, dtype=int),
+            np.full(count, UNLABELLED), np.zeros(count, dtype=int),
+        )  # fmt: skip
         self._attempts = _ATTEMPTS
         done, group = 0, max(8, _GROUP // self.strobe.system.size)
         try:
@@ -115,19 +160,24 @@ class Settling:
             active, _ = self._carry(result, active, min(stretch, left), 0, bound)
             active = self._drop_inside_balls(result, active)
             left -= min(stretch, left)
-        history = np.empty((len(active), 0, result.states.shape[1]))
-        tried = np.full(len(result.labels), -_REST)
+        nothing = np.zeros(len(active), dtype=int)
+        watched = _Watched(active, np.empty((len(active), 0, result.states.shape[1])), nothing, nothing.copy())
         for _ in range(left // BLOCK):
-            if not len(active):
+            if not len(watched.active):
                 return
-            before = active
-            active, strobes = self._carry(result, active, BLOCK, BLOCK, bound)
-            history = np.concatenate([history[np.isin(before, active)], strobes], axis=1)[:, -2 * WINDOW * BLOCK :]
-            active, history = _kept(active, history, self._drop_inside_balls(result, active))
-            if history.shape[1] >= WINDOW * BLOCK:
-                active, history = self._drop_inside_clouds(result, active, history)
-            if history.shape[1] == 2 * WINDOW * BLOCK:
-                active, history = self._look_for_more(result, active, history, tried)
+            self._follow(result, watched, bound)
+            if watched.history.shape[1] == 2 * WINDOW * BLOCK and self.dissipative:
+                self._look_for_orbits(result, watched)
+                self._hold(result, watched)
+                self._look_for_clouds(result, watched)
+        self._judge(result, watched)
+
+    def _follow(self, result: Settled, watched: _Watched, bound: float) -> None:
+        """Carry the motions on by a block; those that reach a ball are done."""
+        left, strobes = self._carry(result, watched.active, BLOCK, BLOCK, bound)
+        watched.keep(left)
+        watched.history = np.concatenate([watched.history, strobes], axis=1)[:, -2 * WINDOW * BLOCK :]
+        watched.keep(self._drop_inside_balls(result, watched.active))
 
     def _carry(
         self, result: Settled, active: np.ndarray, periods: int, strobes: int, bound: float
@@ -153,56 +203,117 @@ class Settling:
                 active = active[~inside]
         return active
 
-    def _drop_inside_clouds(self, result: Settled, active: np.ndarray, history: Floats) -> tuple[np.ndarray, Floats]:
-        for index, attractor in enumerate(self.known):
-            if len(active) and isinstance(attractor, Cloud):
-                inside = attractor.contains(history[:, -WINDOW * BLOCK :])
-                _label(result, active[inside], index)
-                active, history = active[~inside], history[~inside]
-        return active, history
-
-    def _look_for_more(
-        self, result: Settled, active: np.ndarray, history: Floats, tried: np.ndarray
-    ) -> tuple[np.ndarray, Floats]:
-        """Try motions that have become stationary as evidence of an attractor not known yet."""
-        at = 0 if self.dissipative else len(active)
-        while at < len(active) and self._attempts > 0:
-            i = active[at]
-            if result.periods[i] - tried[i] < _REST:
-                at += 1
+    def _look_for_orbits(self, result: Settled, watched: _Watched) -> None:
+        """Refine the motions that nearly repeat; what is found and was not known is known from now on."""
+        due = watched.due(result.periods)
+        places = np.flatnonzero(np.isin(watched.active, due))
+        for i, multiples in zip(due, self._repeats(watched.history[places]), strict=True):
+            at = watched.place(i)
+            if at is None or not multiples:
                 continue
-            found = self._new_attractor(history[at])
-            if found is None:
-                at += 1
-                continue
-            tried[i] = result.periods[i]
-            self._attempts -= 1
-            if isinstance(found, Orbit | Cloud):
-                self.known.append(found)
-                active, history = _kept(active, history, self._drop_inside_balls(result, active))
-                active, history = self._drop_inside_clouds(result, active, history)
-        return active, history
+            known = len(self.known)
+            found = self._orbit_near(watched.history[at], multiples)
+            watched.nature[at] = _Nature.BEAT if found is None else _Nature.ORBIT
+            watched.tried[at] = 0 if found is None else result.periods[i]  # a beat is for `_look_for_clouds` to try
+            if len(self.known) > known:
+                watched.keep(self._drop_inside_balls(result, watched.active))
 
-    def _new_attractor(self, strobes: Floats) -> Orbit | Cloud | bool | None:
-        """Attractor that strobes (K, 2n) give evidence of; False if a trial says there is none, None without one."""
+    def _repeats(self, strobes: Floats) -> list[list[int]]:
+        """After how many periods each of the motions with these strobes (N, K, 2n) nearly repeats."""
+        sizes = np.array([orbit_size(self.strobe, motion) for motion in strobes])
+        return repeats(strobes / sizes.reshape(len(strobes), 1, strobes.shape[2]))
+
+    def _orbit_near(self, strobes: Floats, multiples: Sequence[int]) -> int | None:
+        """Index of the stable orbit that the last of the strobes (K, 2n) refines to, made known if it was not."""
         size = orbit_size(self.strobe, strobes)
-        multiple = _period_multiple(strobes / size)
-        if multiple:
-            centres = [orbit.states for orbit in self.orbits]
-            if any(np.min(np.max(np.abs((strobes[-1] - c) / size), axis=1)) < _SAME for c in centres):
-                return None
-            state = refined(self.strobe, strobes[-1], multiple)
-            orbit = None if state is None else orbit_at(self.strobe, state, multiple)
-            if orbit is not None and orbit.contains(strobes[-multiple:]).any():
-                return orbit
-            # a beat of nearly that many periods: what it covers shows only over a long time
-            spread = drift(self.strobe, strobes[-1])
-            if spread is None:
-                return False
-            strobes = spread
-        if not looks_stationary(strobes):
+        for multiple in reversed(multiples):  # what repeats best first
+            found = refined(self.strobe, strobes[-1], multiple)
+            if found is None or spectral_radius(found[1]) > _UNSTABLE:
+                continue
+            state = found[0]
+            for index, attractor in enumerate(self.known):
+                if isinstance(attractor, Orbit) and attractor.passes(state, size):
+                    return index
+            orbit = orbit_at(self.strobe, state, multiple)
+            if orbit is not None:
+                self.known.append(orbit)
+                return len(self.known) - 1
+        return None
+
+    def _hold(self, result: Settled, watched: _Watched) -> None:
+        """Note which motions are where a known cloud has been; on a regular one they stay."""
+        free = np.flatnonzero((result.held[watched.active] == UNLABELLED) & (watched.nature != _Nature.ORBIT))
+        index, share = self._nearest_cloud(watched.history[free, -WINDOW * BLOCK :])
+        free, index = free[share >= INSIDE], index[share >= INSIDE]
+        members = watched.active[free]
+        result.held[members], result.held_from[members] = index, result.periods[members]
+        for at, i, cloud in zip(free, members, index, strict=True):
+            if self._is_regular(cloud) and looks_stationary(watched.history[at]):
+                _label(result, np.array([i]), cloud)
+        watched.keep(watched.active[result.labels[watched.active] == UNLABELLED])
+
+    def _is_regular(self, index: int) -> bool:
+        attractor = self.known[index]
+        return isinstance(attractor, Cloud) and not attractor.exponent.chaotic
+
+    def _nearest_cloud(self, strobes: Floats) -> tuple[np.ndarray, Floats]:
+        """Index of the cloud that holds the largest share of each motion's strobes (N, K, 2n), and that share."""
+        best, largest = np.full(len(strobes), UNLABELLED), np.zeros(len(strobes))
+        for index, attractor in enumerate(self.known):
+            if isinstance(attractor, Cloud):
+                share = attractor.share(strobes)
+                best, largest = np.where(share > largest, index, best), np.maximum(share, largest)
+        return best, largest
+
+    def _look_for_clouds(self, result: Settled, watched: _Watched) -> None:
+        """Try motions that have become stationary as evidence of an attractor that is no orbit."""
+        for i in watched.due(result.periods):
+            at = watched.place(i)
+            if at is None or result.held[i] != UNLABELLED or watched.nature[at] == _Nature.ORBIT or not self._attempts:
+                continue
+            evidence = self._evidence(watched.history[at], watched.nature[at])
+            if evidence is None and watched.nature[at] != _Nature.BEAT:
+                continue
+            watched.tried[at] = result.periods[i]
+            self._attempts -= 1
+            if evidence is None or self._is_known(evidence):
+                continue
+            cloud = confirmed(self.strobe, evidence, self.orbits)
+            if cloud is not None:
+                self.known.append(cloud)
+                self._hold(result, watched)
+
+    def _is_known(self, strobes: Floats) -> bool:
+        """Whether strobes (K, 2n), which may be later ones than those of the motion they belong to, are on a cloud."""
+        return bool(self._nearest_cloud(strobes[None])[1][0] >= INSIDE)
+
+    def _evidence(self, strobes: Floats, nature: int) -> Floats | None:
+        """Strobes (K, 2n) that cover what a motion covers, or None if they do not yet."""
+        # of a beat of nearly a few periods, what it covers shows only over a long time
+        seen = drift(self.strobe, strobes[-1]) if nature == _Nature.BEAT else strobes
+        return seen if seen is not None and looks_stationary(seen) else None
+
+    def _judge(self, result: Settled, watched: _Watched) -> None:
+        """Label what is left when the periods are over: by what each motion converges to, then by where it is."""
+        if not len(watched.active) or watched.history.shape[1] < 2 * WINDOW * BLOCK:
+            return
+        index, share = self._nearest_cloud(watched.history[:, -WINDOW * BLOCK :])
+        for at, i in enumerate(watched.active):
+            orbit = self._orbit_approached(watched.history[at]) if self.dissipative else None
+            if orbit is not None:
+                _label(result, watched.active[at : at + 1], orbit)
+            elif share[at] >= (INSIDE if result.held[i] == UNLABELLED else BELONGS):
+                _label(result, watched.active[at : at + 1], index[at])
+
+    def _orbit_approached(self, strobes: Floats) -> int | None:
+        """Index of the stable orbit that a motion with these strobes (K, 2n) nearly repeats and comes nearer to."""
+        index = self._orbit_near(strobes, self._repeats(strobes[None])[0])
+        if index is None:
             return None
-        return confirmed(self.strobe, strobes, self.orbits) or False
+        orbit = self.known[index]
+        assert isinstance(orbit, Orbit)
+        distance = orbit.distance(strobes)
+        return index if np.max(distance[-HIGHEST_MULTIPLE:]) < np.min(distance[:HIGHEST_MULTIPLE]) else None
 
 
 def known_orbits(strobe: Stroboscope, states: Sequence[Floats]) -> list[Orbit | None]:
@@ -210,20 +321,7 @@ def known_orbits(strobe: Stroboscope, states: Sequence[Floats]) -> list[Orbit | 
     return [orbit_at(strobe, np.array(state)) for state in states]
 
 
-def _period_multiple(strobes: Floats) -> int:
-    """Smallest number of periods after which the last strobes (K, 2n), over the motion's size, nearly repeat; or 0."""
-    last = strobes[-4 * _HIGHEST_MULTIPLE :]
-    for multiple in range(1, _HIGHEST_MULTIPLE + 1):
-        if np.max(np.abs(last[multiple:] - last[:-multiple])) < _NEARLY_PERIODIC:
-            return multiple
-    return 0
-
-
 def _label(result: Settled, members: np.ndarray, index: int) -> None:
     result.labels[members] = index
     for i in members:
         result.outcomes[i] = Outcome.DONE
-
-
-def _kept(active: np.ndarray, history: Floats, left: np.ndarray) -> tuple[np.ndarray, Floats]:
-    return left, history[np.isin(active, left)]

@@ -2,7 +2,14 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.attractors.orbits import monodromy_along, orbit_at, points_needed, refined, unstable_directions
+from frahm.attractors.orbits import (
+    _adapted_root,
+    monodromy_along,
+    orbit_at,
+    points_needed,
+    refined,
+    unstable_directions,
+)
 from frahm.attractors.stroboscope import stroboscope
 from frahm.harmonic_balance import periodic_responses_of
 from frahm.time_integration import integrate_batch
@@ -49,5 +56,21 @@ def test_an_unstable_response_has_no_ball_and_a_way_out(strobe):
 
 def test_newton_finds_the_orbit_from_beside_it(strobe):
     state = np.array(RESPONSES[2].state)
-    found = refined(strobe, state * 1.01, 1)
+    found, Phi = refined(strobe, state * 1.01, 1)
     np.testing.assert_allclose(found, state, rtol=1e-7)
+    ours = np.sort_complex(np.linalg.eigvals(Phi))
+    np.testing.assert_allclose(ours, np.sort_complex(np.array(RESPONSES[2].multipliers)), atol=1e-5)
+
+
+def test_the_adapted_norm_shrinks_however_dependent_the_eigenvectors_are():
+    """P = M^T M was indefinite by rounding for one in a hundred of these nearly defective matrices."""
+    random = np.random.default_rng(0)
+    for _ in range(500):
+        n, rho = random.choice([4, 6]), random.choice([1e-8, 0.1, 0.5, 0.9])
+        jordan = np.diag(np.full(n, rho)) + np.diag(10.0 ** random.uniform(-3, 1, n - 1), 1)
+        Q = np.linalg.qr(random.standard_normal((n, n)))[0]
+        Phi = Q @ jordan @ Q.T
+        rho = np.max(np.abs(np.linalg.eigvals(Phi)))
+        R = _adapted_root(Phi, rho)
+        shrinkage = np.linalg.norm(R @ Phi @ np.linalg.inv(R), 2)
+        assert shrinkage <= 1 - 0.49 * (1 - rho)
