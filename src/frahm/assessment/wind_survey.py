@@ -14,7 +14,7 @@ from frahm.arrays import Floats
 from frahm.assessment.detail import Detail
 from frahm.assessment.motion_damage import MotionDamage, largest_place, motion_damage
 from frahm.attractors import Attractor, AttractorSet
-from frahm.attractors.finding import PERIODS, attractors_from, attractors_reached
+from frahm.attractors.finding import attractors_from, attractors_reached, settling_periods
 from frahm.attractors.regions import default_region
 from frahm.attractors.stroboscope import Stroboscope, stroboscope
 from frahm.case import Case
@@ -188,14 +188,17 @@ class WindSurvey:
         W = float(wind_excitation(self.case).frequency(speed))
         responses = tuple(periodic_responses_of(system, W, None))
         region = default_region(system, W, responses)
-        found = attractors_from(_strobe(system, W), responses, region, self.samples, self.seed, PERIODS, False)
+        found = attractors_from(
+            _strobe(system, W), responses, region, self.samples, self.seed, settling_periods(system, W), False
+        )
         damage = self._damage(system, found)
         return WindFindings(speed, W, system, responses, found, damage)
 
     def _carried(self, speed: float) -> WindFindings:
         here = self.at[speed]
         strobe = _strobe(here.system, here.frequency)
-        reached = attractors_reached(strobe, here.responses, self._from_neighbours(speed), PERIODS)
+        periods = settling_periods(here.system, here.frequency)
+        reached = attractors_reached(strobe, here.responses, self._from_neighbours(speed), periods)
         new = tuple(one for one in reached if not any(_alike(one, known) for known in here.found))
         damage = self._damage(here.system, new)
         found = dataclasses.replace(here.found, attractors=(*here.found.attractors, *new))

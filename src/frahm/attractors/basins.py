@@ -8,7 +8,7 @@ import numpy as np
 
 from frahm.arrays import Floats, labelled
 from frahm.attractors.attractor import AttractorSet
-from frahm.attractors.finding import PERIODS, begin_settling, describe
+from frahm.attractors.finding import begin_settling, describe, settling_periods
 from frahm.attractors.regions import UNITS, Region, check_names, checked_region, default_region, states_of
 from frahm.attractors.seeds import seed_states
 from frahm.attractors.settling import UNLABELLED
@@ -37,7 +37,7 @@ def basin_map(
     plane: tuple[str, str] = ("x1", "v1"),
     extent: tuple[tuple[float, float], tuple[float, float]] | None = None,
     resolution: int | tuple[int, int] = 100,
-    periods: int = PERIODS,
+    periods: int | None = None,
     workers: int | None = None,
 ) -> xr.Dataset:
     """Attractor that every initial state of a plane leads to, the other initial values being 0.
@@ -75,7 +75,7 @@ def basin_map(
     W = excitation_frequency(system, detuning=detuning, frequency=frequency)
     names, shape = _checked_plane(system, plane), _checked_resolution(resolution)
     given = None if extent is None else _checked_extent(system, names, extent)
-    periods = check_count("periods", periods, at_most=1_000_000)
+    periods = settling_periods(system, W) if periods is None else check_count("periods", periods, at_most=1_000_000)
     strobe = stroboscope(system, W, None if workers is None else check_count("workers", workers, at_most=1024))
     responses = periodic_responses_of(system, W, None)
     region = given or {name: default_region(system, W, responses)[name] for name in names}

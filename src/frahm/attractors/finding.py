@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -20,12 +21,15 @@ from frahm.attractors.settling import UNLABELLED, Settled, Settling, known_orbit
 from frahm.attractors.stroboscope import Stroboscope, stroboscope
 from frahm.errors import Outcome, check_count
 from frahm.harmonic_balance import PeriodicResponse, periodic_responses_of
+from frahm.harmonic_balance.linear import linear_exponents
 from frahm.systems import System, as_system, detuning_of, excitation_frequency
 
 if TYPE_CHECKING:
     from frahm.case import Case
 
 PERIODS = 3000
+_TIME_CONSTANTS, _MOST_PERIODS = 28.0, 20_000  # of the slowest free vibration until it is gone; see `settling_periods`
+_TURNS = 1e-6  # of the excitation frequency: what turns more slowly is no vibration
 MOST_SAMPLES = 1_000_000
 _SCOUTS = 16  # of the sample, settled first: attractors they find are known to the rest
 _ALIKE = 0.02  # of the peak: clouds that differ less are one modulated response, whatever its beat is locked to
@@ -40,7 +44,7 @@ def find_attractors(
     region: dict[str, tuple[float, float]] | None = None,
     samples: int = 200,
     seed: int = 1,
-    periods: int = PERIODS,
+    periods: int | None = None,
     workers: int | None = None,
 ) -> AttractorSet:
     """Every long-term motion at one excitation frequency, with the share of initial states that leads to it.
@@ -49,10 +53,10 @@ def find_attractors(
     and from the jumps of the slow manifold; stable periodic responses are known from harmonic balance. A motion inside
     the ball around a stable orbit in which the exact equations contract (a radius verified by sampled iterations) is
     settled; one that nearly repeats, after up to 64 periods, is refined by Newton's method. One that keeps coming back
-    to where it has been, and from where eight of sixteen motions have not left within 2500 periods, is on a modulated or
-    chaotic set. As motions leave some chaotic sets in the end, those on one are followed to the last period: fractions
-    are those after `periods` periods, and the rate of leaving is told. Modulated attractors whose peaks and rms agree
-    within 2 % of the peak are one: a beat can lock to the forcing in several ways.
+    to where it has been, and from where eight of sixteen motions have not left within 2500 periods, is on a modulated
+    or chaotic set. As motions leave some chaotic sets in the end, those on one are followed to the last period: the
+    fractions are those after `periods` periods, and the rate of leaving is told. Modulated attractors whose peaks and
+    rms agree within 2 % of the peak are one: a beat can lock to the forcing in several ways.
 
     Parameters
     ----------
@@ -87,12 +91,25 @@ def find_attractors(
     W = excitation_frequency(system, detuning=detuning, frequency=frequency)
     samples = check_count("samples", samples, at_least=0, at_most=MOST_SAMPLES)
     seed = check_count("seed", seed, at_least=0)
-    periods = check_count("periods", periods, at_most=1_000_000)
+    periods = settling_periods(system, W) if periods is None else check_count("periods", periods, at_most=1_000_000)
     workers = None if workers is None else check_count("workers", workers, at_most=1024)
     given = None if region is None else checked_region(system, region)
     responses = periodic_responses_of(system, W, None)
     box = default_region(system, W, responses) if given is None else given
     return attractors_from(stroboscope(system, W, workers), responses, box, samples, seed, periods)
+
+
+def settling_periods(system: System, frequency: float) -> int:
+    """Periods of the forcing in which the slowest free vibration of the linear part dies out, 3000 at least.
+
+    28 of its time constants; 20 000 periods at most, where what has not settled is called unsettled.
+    """
+    values = linear_exponents(system)
+    decays = -values.real[values.imag > _TURNS * frequency]
+    slowest = float(np.min(decays[decays > 0], initial=math.inf))
+    if not math.isfinite(slowest):
+        return PERIODS
+    return int(np.clip(_TIME_CONSTANTS * frequency / (2 * np.pi * slowest), PERIODS, _MOST_PERIODS))
 
 
 def attractors_from(

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm.attractors.attractor import Attractor, AttractorSet
-from frahm.attractors.finding import MOST_SAMPLES, PERIODS, attractors_from
-from frahm.attractors.linear_motion import linear_motions
+from frahm.attractors.finding import MOST_SAMPLES, attractors_from, settling_periods
+from frahm.attractors.periodic_motion import linear_motions, stable_motions
 from frahm.attractors.regions import Region, checked_region, region_for
 from frahm.attractors.stroboscope import stroboscope
 from frahm.attractors.worst_motion import WorstMotion, joined
@@ -34,6 +34,8 @@ _CLOSE = 8e-5  # frequencies nearer than this are one
 _FINE = 3.3e-4  # how near its neighbours the worst is looked at in the end
 _ROUNDS = 12
 _LARGER = 1.01  # what is larger by less is as large
+
+PERIODIC_TIER = "all stable periodic responses, and a search where there is none"
 
 Size = Callable[[Attractor], float]
 
@@ -133,7 +135,7 @@ def worst_case(
     min_basin: float = 0.01,
     seed: int = 1,
     region: dict[str, tuple[float, float]] | None = None,
-    periods: int = PERIODS,
+    periods: int | None = None,
     workers: int | None = None,
     rms: bool = False,
 ) -> WorstCase:
@@ -186,13 +188,14 @@ def worst_case(
         "min_basin": check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
         "seed": check_count("seed", seed, at_least=0),
         "region": None if region is None else checked_region(system, region),
-        "periods": check_count("periods", periods, at_most=1_000_000),
+        "periods": None if periods is None else check_count("periods", periods, at_most=1_000_000),
         "workers": None if workers is None else check_count("workers", workers, at_most=1024),
         "rms": rms,
     }
     first = worst_over(system, within, **settings)
     if isinstance(case_or_system, System) or not within.moves:
         return first
+    settings |= {"region": None, "sampled": False}
     others = [worst_over(build_system(case), part, **settings) for case, part in other_modes(load_case(case_or_system))]
     return worst_of((first, *others))
 
@@ -219,10 +222,13 @@ def _range(case_or_system: Any, system: System, detuning: Any, frequency: Any, w
 
 def worst_over(
     system: System, within: OperatingRange, *, samples: int, min_basin: float, seed: int,
-    region: Region | None = None, periods: int = PERIODS, workers: int | None = None, rms: bool = False,
-    beside: float = BESIDE,
+    region: Region | None = None, periods: int | None = None, workers: int | None = None, rms: bool = False,
+    beside: float = BESIDE, sampled: bool = True,
 ) -> WorstCase:  # fmt: skip
-    """`worst_case` of a system over a range; special points are looked at from `beside` of the frequency away."""
+    """`worst_case` of a system over a range; special points are looked at from `beside` of the frequency away.
+
+    If not `sampled`, the stable periodic responses count, and states are sampled only where there is none.
+    """
     wide = within.widened()
     curve, responses_at = _curve(system, wide)
     at = driven_at(system, wide)
@@ -234,8 +240,12 @@ def worst_over(
     box = region or _region_of(system, curve, lo, hi)
 
     def survey(W: float, exponents: bool = False) -> AttractorSet:
-        strobe = stroboscope(at(W), W, workers)
-        return attractors_from(strobe, responses_at(W), box, samples, seed, periods, exponents)
+        responses = responses_at(W)
+        known = None if sampled else stable_motions(system, responses, W)
+        if known is not None:
+            return known
+        followed = settling_periods(system, W) if periods is None else periods
+        return attractors_from(stroboscope(at(W), W, workers), responses, box, samples, seed, followed, exponents)
 
     def look(W: float, exponents: bool = False) -> None:
         surveys[W] = survey(W, exponents)
@@ -254,7 +264,8 @@ def worst_over(
         doubts.append(Outcome.INTERRUPTED.value)
     if any(_gaps(surveys, W) for W in {_largest(surveys, size, min_basin)[0] for size in sizes}):
         doubts.append("The frequency of the worst was not bracketed to 0.03 %.")
-    return _concluded(system, within, wide, curve, surveys, min_basin, tuple(doubts))
+    tier = "attractor search" if sampled else PERIODIC_TIER
+    return _concluded(system, within, wide, curve, surveys, min_basin, tuple(doubts), tier)
 
 
 def driven_at(system: System, within: OperatingRange) -> Callable[[float], System]:
@@ -340,7 +351,7 @@ def _largest(surveys: dict[float, AttractorSet], size: Size, min_basin: float) -
         (W, attractor)
         for W in sorted(surveys)
         for attractor in surveys[W]
-        if attractor.basin_fraction >= min_basin and not np.isnan(size(attractor))
+        if not attractor.basin_fraction < min_basin and not np.isnan(size(attractor))
     ]
     if not counting:
         counting = [(W, attractor) for W in sorted(surveys) for attractor in surveys[W]]
@@ -414,12 +425,11 @@ def _doubts(
 
 def _concluded(
     system: System, within: OperatingRange, wide: OperatingRange, curve: ResponseCurve,
-    surveys: dict[float, AttractorSet], min_basin: float, doubts: tuple[str, ...],
+    surveys: dict[float, AttractorSet], min_basin: float, doubts: tuple[str, ...], tier: str = "exact linear response",
 ) -> WorstCase:  # fmt: skip
     W, worst = _largest(surveys, _pipe, min_basin)
     W_relative, stroke = _largest(surveys, _relative, min_basin)
     W_rms, loudest = _largest(surveys, _rms, min_basin)
-    linear = is_linear(system) or not np.any(system.forcing)
     found = _doubts(within, wide, curve, surveys, (W, worst), min_basin)
     possible = [a.pipe_peak for s in surveys.values() for a in s if a.basin_interval[1] >= min_basin]
     motion = WorstMotion(
@@ -436,7 +446,7 @@ def _concluded(
         rms_frequency=W_rms,
         state=worst.representative_state,
         range=within.text,
-        tier="exact linear response" if linear else "attractor search",
+        tier=tier,
         samples=surveys[W].samples,
         searched=len(surveys),
         unverified=tuple(dict.fromkeys([*doubts, *found])),

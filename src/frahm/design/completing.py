@@ -30,7 +30,7 @@ def worst_motion(case: Case, problem: Problem, nominal: WorstCase | None) -> Wor
     first = worst_over(build_system(case), within, **asked) if nominal is None else nominal
     motions = [with_stress(case, first)]
     for other, part in other_modes(case, problem.most_mass_ratio) if within.moves else ():
-        motions.append(with_stress(other, worst_over(build_system(other), part, **asked)))
+        motions.append(with_stress(other, worst_over(build_system(other), part, **asked, sampled=False)))
     return joined(motions)
 
 

@@ -77,7 +77,7 @@ def verification(
     seed: int,
     force: float = 1.0,
     min_basin: float = 0.0,
-    periods: int = 3000,
+    periods: int | None = None,
     refine: bool = True,
     quick: bool = False,
 ) -> Verification:

@@ -1,0 +1,107 @@
+"""Lasting motions that are known without a sample: the one of a linear system, and stable periodic responses."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from frahm.arrays import Floats, frozen
+from frahm.attractors.attractor import Attractor, AttractorSet
+from frahm.attractors.extremes import DURATION
+from frahm.errors import Outcome
+from frahm.harmonic_balance import PeriodicResponse, linear_growth, linear_response
+from frahm.loads import OperatingRange
+from frahm.response import ResponseCurve
+from frahm.systems import System, detuning_of
+
+_EXACT = 1e-12  # relative tolerance of the frequency of a peak
+
+
+def linear_motions(system: System, curve: ResponseCurve, within: OperatingRange) -> dict[float, AttractorSet]:
+    """The motion at the ends of a range and at the largest peaks of pipe and stroke, by frequency [rad/s].
+
+    The peaks are maximised between the points of the curve, so that they do not depend on its points.
+    """
+    lo, hi = within.frequency
+    inside = (curve.frequency >= lo) & (curve.frequency <= hi)
+    first = system.elements[0].direction if system.elements else np.zeros(system.size)
+    places = {lo, hi}
+    for row, peaks in ((system.output, curve.pipe_peak), (first, curve.relative_peak)):
+        if np.any(peaks[inside] > 0):
+            at = int(np.argmax(np.where(inside, peaks, -1.0)))
+            places.add(_summit(_amplitude(system, row, within), curve.frequency, at, lo, hi))
+    growth = linear_growth(system)
+    return {W: _alone(system, W, within, first, growth) for W in sorted(places)}
+
+
+def _amplitude(system: System, row: Floats, within: OperatingRange) -> Callable[[float], float]:
+    def at(W: float) -> float:
+        if not np.any(system.forcing):
+            return 0.0
+        return abs(complex(linear_response(system, np.array([W]))[0] @ row)) * within.lift_factor(W)
+
+    return at
+
+
+def _summit(amplitude: Callable[[float], float], grid: Floats, at: int, lo: float, hi: float) -> float:
+    from scipy.optimize import minimize_scalar  # takes long to load
+
+    left, right = max(lo, float(grid[max(at - 1, 0)])), min(hi, float(grid[min(at + 1, grid.size - 1)]))
+    here = float(grid[at])
+    if not left < right:
+        return here
+    found = minimize_scalar(lambda W: -amplitude(W), bounds=(left, right), method="bounded",
+                            options={"xatol": _EXACT * here})  # fmt: skip
+    return max((float(found.x), here), key=amplitude)
+
+
+def _alone(system: System, W: float, within: OperatingRange, first: Floats, growth: float) -> AttractorSet:
+    """The one motion at a frequency, as the set of attractors there."""
+    factor = within.lift_factor(W)
+    X = factor * linear_response(system, np.array([W]))[0] if np.any(system.forcing) else np.zeros(system.size, complex)
+    pipe, stroke = abs(complex(X @ system.output)), abs(complex(X @ first))
+    state = frozen(np.column_stack([X.real, (1j * W * X).real]).ravel())
+    sizes = (pipe, stroke, pipe / math.sqrt(2), stroke / math.sqrt(2))
+    alone = _periodic(system, W, sizes, state, growth, 1.0, (1.0, 1.0))
+    return AttractorSet((alone,), W, alone.detuning, {}, 0, 0, 0, Outcome.DONE)
+
+
+def stable_motions(system: System, responses: Sequence[PeriodicResponse], W: float) -> AttractorSet | None:
+    """The stable periodic responses at a frequency as attractors of unknown basins; None if there is none."""
+    first = system.elements[0].direction if system.elements else np.zeros(system.size)
+    found = []
+    for response in responses:
+        if response.stable:
+            rms = (_rms(response, row) for row in (system.output, first))
+            growth = math.log(max(abs(response.multipliers[0]), 1e-300)) / response.period
+            sizes = (response.pipe_peak, response.relative_peak, *rms)
+            found.append(_periodic(system, W, sizes, response.state, growth, math.nan, (0.0, 1.0)))
+    if not found:
+        return None
+    found.sort(key=lambda attractor: -attractor.pipe_peak)
+    return AttractorSet(tuple(found), W, found[0].detuning, {}, 0, 0, 0, Outcome.DONE)
+
+
+def _rms(response: PeriodicResponse, row: Floats) -> float:
+    """Root mean square of a combination of coordinates over a period [m]."""
+    parts = [abs(complex(X @ row)) ** 2 * (1.0 if k == 0 else 0.5) for k, X in response.harmonics.items()]
+    return math.sqrt(sum(parts))
+
+
+def _periodic(
+    system: System, W: float, sizes: tuple[float, ...], state: Floats, growth: float, chance: float,
+    interval: tuple[float, float],
+) -> Attractor:  # fmt: skip
+    """A motion with the period of the excitation; `sizes` are peaks and rms of pipe and stroke [m]."""
+    pipe, stroke, pipe_rms, stroke_rms = sizes
+    return Attractor(
+        kind="periodic", frequency=W, detuning=float(detuning_of(system, W)), pipe_peak=pipe, relative_peak=stroke,
+        pipe_peak_expected=pipe, pipe_peak_expected_interval=(pipe, pipe), relative_peak_expected=stroke,
+        relative_peak_expected_interval=(stroke, stroke), return_time=DURATION * 2 * math.pi / W,
+        escape_rate=0.0, escape_interval=(0.0, 0.0), pipe_rms=pipe_rms, relative_rms=stroke_rms,
+        envelope=(pipe, pipe), relative_envelope=(stroke, stroke), period_multiple=1, beat_period=math.nan,
+        frequencies=(W,), lyapunov=growth, lyapunov_interval=(growth, growth), basin_fraction=chance,
+        basin_interval=interval, representative_state=state, from_rest=False, outcome=Outcome.DONE,
+    )  # fmt: skip
