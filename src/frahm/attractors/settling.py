@@ -83,16 +83,22 @@ class _Watched:
     history: Floats
     nature: np.ndarray
     tried: np.ndarray
+    refused: np.ndarray  # periods at which Newton's method last found no orbit
 
     def keep(self, left: np.ndarray) -> None:
         """Go on with the motions of the states `left` alone."""
         kept = np.isin(self.active, left)
         self.active, self.history = self.active[kept], self.history[kept]
-        self.nature, self.tried = self.nature[kept], self.tried[kept]
+        self.nature, self.tried, self.refused = self.nature[kept], self.tried[kept], self.refused[kept]
 
     def due(self, periods: np.ndarray) -> list[int]:
         """States whose turn to be tried has come; a trial is worth repeating only after half as long again."""
         return [int(i) for i, tried in zip(self.active, self.tried, strict=True) if periods[i] >= _AGAIN * tried]
+
+    def to_refine(self, periods: np.ndarray, held: np.ndarray) -> list[int]:
+        """States that may be near an orbit: due, not refused lately, and not where a known cloud has been."""
+        refused = dict(zip(self.active.tolist(), self.refused.tolist(), strict=True))
+        return [i for i in self.due(periods) if periods[i] >= _AGAIN * refused[i] and held[i] == UNLABELLED]
 
     def place(self, state: int) -> int | None:
         """Where a state stands among those still followed."""
@@ -161,7 +167,8 @@ class Settling:
             active = self._drop_inside_balls(result, active)
             left -= min(stretch, left)
         nothing = np.zeros(len(active), dtype=int)
-        watched = _Watched(active, np.empty((len(active), 0, result.states.shape[1])), nothing, nothing.copy())
+        strobes = np.empty((len(active), 0, result.states.shape[1]))
+        watched = _Watched(active, strobes, nothing, nothing.copy(), nothing.copy())
         for _ in range(left // BLOCK):
             if not len(watched.active):
                 return
@@ -205,7 +212,7 @@ class Settling:
 
     def _look_for_orbits(self, result: Settled, watched: _Watched) -> None:
         """Refine the motions that nearly repeat; what is found and was not known is known from now on."""
-        due = watched.due(result.periods)
+        due = watched.to_refine(result.periods, result.held)
         places = np.flatnonzero(np.isin(watched.active, due))
         for i, multiples in zip(due, self._repeats(watched.history[places]), strict=True):
             at = watched.place(i)
@@ -215,6 +222,7 @@ class Settling:
             found = self._orbit_near(watched.history[at], multiples)
             watched.nature[at] = _Nature.BEAT if found is None else _Nature.ORBIT
             watched.tried[at] = 0 if found is None else result.periods[i]  # a beat is for `_look_for_clouds` to try
+            watched.refused[at] = result.periods[i] if found is None else 0
             if len(self.known) > known:
                 watched.keep(self._drop_inside_balls(result, watched.active))
 
