@@ -98,7 +98,7 @@ def test_what_the_optimum_does_from_rest(frequency, low, high, kinds):
     region = {"x1": (-1.0, 1.0), "v1": (-1.0, 1.0)}
     reached = from_rest(frahm.find_attractors(OPTIMUM, frequency=frequency, samples=16, region=region))
     assert reached.kind in kinds
-    # The reference saw 1000 periods: chaos reaches further in the 8000 of `pipe_peak`.
+    # The bounds were drawn for the median of windows of 1000 periods: chaos reaches further in the 8000 of `pipe_peak`.
     states = reached.representative_state * np.linspace(0.9999, 1.0001, 9)[:, None]
     windows = integrate_batch(OPTIMUM, frequency=frequency, initial_states=states, periods=1000, window=1000).pipe_peak
     assert low < np.median(windows) < high

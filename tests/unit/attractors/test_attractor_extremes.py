@@ -68,3 +68,11 @@ def test_the_bound_of_a_periodic_motion_is_its_peak():
         assert attractor.pipe_peak_expected_interval == (attractor.pipe_peak, attractor.pipe_peak)
         assert attractor.relative_peak_expected == attractor.relative_peak
     assert found.to_dataset().pipe_peak_expected.attrs["units"] == "m"
+
+
+def test_the_bound_of_a_linear_motion_is_its_peak():
+    system = frahm.System([[1.0]], [[0.05]], [[1.0]], [0.1])
+    worst = frahm.worst_case(system, frequency=(0.8, 1.2)).attractor
+    assert worst.pipe_peak_expected == worst.pipe_peak == pytest.approx(2.0, rel=1e-3)
+    assert worst.return_time == pytest.approx(10_000 * 2 * np.pi / worst.frequency)
+    assert not worst.leaks
