@@ -261,10 +261,9 @@ def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
     law, (site, about_site) = wind_excitation(case), site_winds(case)
     bands, speed = excited_bands(case, most_mass_ratio), case.wind.speed
     elsewhere = any(lo <= float(law.frequency(speed)) <= hi for lo, hi in bands[1:])
-    ends = [float(U) for W in bands[0] for U in law.speeds_of(W)]
-    reached = law.speed_range
+    ends, reached = _winds_of(law, bands[0]), law.speed_range
     basis = [_about_band(case, bands[0], elsewhere), about_site]
-    if len(ends) < 2:
+    if not all(law.speeds_of(W).size for W in bands[0]):
         basis.append(
             f"Strouhal number and lift are given for {reached[0]:.3g} ... {reached[1]:.3g} m/s only: nothing is known"
             " beyond."
@@ -298,7 +297,7 @@ def other_modes(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, O
             continue
         other = case.with_pipe(governing_mode=mode)
         band = excited_bands(other, most_mass_ratio * case.pipe.mass / other.pipe.mass)[0]
-        ends = [float(U) for W in band for U in law.speeds_of(W)]
+        ends = _winds_of(law, band)
         lo = max(min(ends, default=math.inf), site[0], reached[0])
         hi = min(max(ends, default=0.0), site[1], reached[1])
         if lo < hi * (1 - _SAME) and law.is_monotone(lo, hi):
@@ -320,6 +319,12 @@ def excited_bands(case: Case, most_mass_ratio: float = 0.0) -> list[tuple[float,
         first, second = split_resonances(float(ratio))
         bands.append((float(omega) * low * first, float(omega) * high * second))
     return bands
+
+
+def _winds_of(law: WindExcitation, band: tuple[float, float]) -> list[float]:
+    """Winds that shed at the ends of a band, and the ends of the tables that lie within it; none if none excites."""
+    edges = [U for U in law.speed_range if 0 < U < math.inf and band[0] <= float(law.frequency(U)) <= band[1]]
+    return [*(float(U) for W in band for U in law.speeds_of(W)), *edges]
 
 
 def _about_band(case: Case, band: tuple[float, float], elsewhere: bool) -> str:

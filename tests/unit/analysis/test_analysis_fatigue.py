@@ -80,7 +80,7 @@ def test_stored_and_reported(folder):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     found = summary["results"]["fatigue"]
     assert 0 < found["damage_with"] < found["damage_without"]
-    assert "The fatigue damage of 20 years times the design fatigue factor 3" in summary["results"]["verdict"]
+    assert "The fatigue damage of 20.0 years times the design fatigue factor 3" in summary["results"]["verdict"]
     assert (folder / "figures" / "fatigue.png").stat().st_size > 10_000
     text = (folder / "report.html").read_text(encoding="utf-8")
     assert '<section id="fatigue">' in text

@@ -1,4 +1,5 @@
 import json
+import re
 
 import numpy as np
 import pytest
@@ -202,7 +203,11 @@ def test_an_analysis_is_the_same_after_a_round_trip(tmp_path):
 
 def test_what_the_slow_flow_cannot_treat_has_an_exact_response():
     done = analyse(with_absorbers(POLYNOMIAL).with_analysis(detuning=(0.1, 0.4), samples=20))
-    assert done.verified
+    assert all(check.status == "pass" for check in done.checks)
+    # the window leaves the resonance out, and nothing else is in doubt
+    assert done.unverified
+    assert all(re.match("Beyond the range|The worst motion sits at the lower end|The search for the worst case missed a"
+                        " motion of 15.1 mm", doubt) for doubt in done.unverified)  # fmt: skip
     assert set(done.results["response"]) == {"harmonic-balance"}
     assert any("one mode with one cubic sink" in note for note in done.notes)
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import frahm
+from frahm.attractors import WorstMotion
 from frahm.case import Scatter
 from frahm.design import DesignSettings, Objective, verified_designs, with_design
 from frahm.design.disturbance import Disturbance
@@ -79,7 +80,12 @@ def test_an_absorber_that_stays_is_not_moved_with_the_frequency_of_the_pipe():
 
 
 def rival(name, value, verified=True):
-    return Rival(name, None, value, value, 0.0, 0.0, 1.0, 4.9, "periodic", math.inf, verified, "test", 0, ())
+    worst = WorstMotion(
+        pipe_peak=value, frequency=4.9, detuning=0.0, wind_speed=math.nan, kind="periodic", basin_fraction=1.0,
+        basin_interval=(1.0, 1.0), relative_peak=0.0, relative_frequency=4.9, pipe_rms=0.0, rms_frequency=4.9,
+        state=np.zeros(4), range="", tier="test", samples=0, searched=1, unverified=() if verified else ("a doubt",),
+    )  # fmt: skip
+    return Rival(name, None, value, worst, worst, Disturbance(), math.inf)
 
 
 def test_the_verdict_names_the_best_that_is_verified():

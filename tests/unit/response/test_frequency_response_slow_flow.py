@@ -101,7 +101,6 @@ def linear_absorber():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({}, "exactly one of the two"),
         ({"detuning": (-0.1, 0.1), "frequency": (1, 2)}, "exactly one of the two"),
         ({"detuning": (-5.0, 0.1)}, "detuning[0]"),
         ({"detuning": (0.1, -0.1)}, "lo < hi"),
@@ -116,6 +115,14 @@ def test_bad_arguments_are_named(case, arguments, message):
     with pytest.raises(frahm.ParameterError) as caught:
         frahm.frequency_response(case, **arguments)
     assert message in str(caught.value)
+
+
+def test_a_system_has_no_range_of_its_own_and_a_case_has():
+    with pytest.raises(frahm.ParameterError, match="exactly one of the two"):
+        frahm.frequency_response(linear_absorber())
+    asked = frahm.load_case("jacket-pipe").without_absorbers()
+    curve = frahm.frequency_response(asked)
+    assert (curve.detuning.min(), curve.detuning.max()) == pytest.approx(asked.analysis.detuning)
 
 
 def test_slow_flow_refuses_other_systems():

@@ -1,0 +1,191 @@
+"""The range of operation against hand computation: the band of a mode, the site, the tables, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+import frahm
+from frahm.loads import excited_bands, operating_range, other_modes, site_winds, split_resonances
+
+FREQUENCY, DIAMETER, STROUHAL = 3.28, 0.61, 0.2
+RESONANCE = FREQUENCY * DIAMETER / STROUHAL  # U_crit = f D / St = 10.004 m/s
+LOW, HIGH = RESONANCE / 1.2, RESONANCE / 0.8  # vortices shed at 1/1.2 ... 1/0.8 of the natural frequency
+SINK = {"mass": 50, "law": {"kind": "cubic", "stiffness": 1e6, "damping": 20}}
+
+
+def case(wind=None, absorbers=(), frequency=FREQUENCY, **sections):
+    """A brace that moves as one, in winds of a constant Strouhal number and lift coefficient."""
+    pipe = {"kind": "mode", "mass": 2500, "length": 16, "frequency": f"{frequency} Hz", "damping_ratio": 0.0015,
+            "diameter": DIAMETER}  # fmt: skip
+    blown = {"speed": 10, "strouhal": STROUHAL, "lift_coefficient": 0.3} | (wind or {})
+    return frahm.load_case({"name": "brace", "pipe": pipe, "wind": blown, "absorbers": list(absorbers)} | sections)
+
+
+@pytest.mark.parametrize("ratio", [1e-6, 0.02, 0.1, 0.7])
+def test_split_resonances_are_the_eigenvalues_of_host_and_tuned_absorber(ratio):
+    squared = eigh([[1 + ratio, -ratio], [-ratio, ratio]], np.diag([1, ratio]), eigvals_only=True)
+    assert split_resonances(ratio) == pytest.approx(np.sqrt(squared), rel=1e-9)
+
+
+def test_without_an_absorber_nothing_is_split():
+    assert split_resonances(0.0) == (1.0, 1.0)
+
+
+@pytest.mark.parametrize("frequency", [0.3, FREQUENCY, 12.0])
+def test_the_default_is_the_lock_in_band_in_proportion_to_the_frequency(frequency):
+    scale = frequency / FREQUENCY
+    within = operating_range(case({"speed": 10 * scale}, frequency=frequency))
+    assert within.over_wind
+    assert within.moves
+    assert within.wind == pytest.approx((scale * LOW, scale * HIGH), rel=1e-12)
+    assert within.frequency == pytest.approx(2 * math.pi * frequency * np.array([1 / 1.2, 1 / 0.8]), rel=1e-12)
+    assert within.detuning == pytest.approx(2 * math.pi * frequency * np.array([-1 / 6, 1 / 4]), rel=1e-12)
+
+
+def test_an_absorber_widens_the_band_by_the_resonances_it_splits():
+    low, high = split_resonances(50 / 2500)
+    own, asked = operating_range(case(absorbers=[SINK])), operating_range(case(), most_mass_ratio=0.02)
+    assert own.wind == pytest.approx((LOW * low, HIGH * high), rel=1e-12)
+    assert asked.wind == own.wind
+    assert operating_range(case(absorbers=[SINK]), most_mass_ratio=0.01).wind == own.wind
+
+
+def test_winds_of_the_site_clip_it_and_nothing_lies_beyond():
+    within = operating_range(case({"range": [9, 11]}))
+    assert within.wind == (9.0, 11.0)
+    assert within.closed(0)
+    assert within.closed(1)
+    assert within.widened().wind == (9.0, 11.0)
+    above = operating_range(case({"range": [9, 40]}))
+    assert above.wind == pytest.approx((9.0, HIGH))
+    assert above.closed(0)
+    assert not above.closed(1)
+
+
+def test_a_climate_bounds_the_winds():
+    table = [{"speed": speed, "probability": 0.25} for speed in (3, 5, 7, 9)]  # classes of 2 m/s up to 10 m/s
+    assert operating_range(case({"speed": 9}, climate={"duration": "30 day", "table": table})).wind[1] == 10.0
+    climate = {"duration": "30 day", "correlation_time": "1 h", "weibull": {"scale": 4, "shape": 2}}
+    site, sentence = site_winds(case(climate=climate))
+    assert site == pytest.approx((0.0, 4 * math.sqrt(math.log(720))))  # exceeded once in 720 independent hours
+    assert math.exp(-((site[1] / 4) ** 2)) == pytest.approx(1 / 720)
+    assert "10.26 m/s" in sentence
+    assert site_winds(case({"range": [1, 8]}, climate=climate))[0] == (1.0, 8.0)
+
+
+@pytest.mark.parametrize("table", [(9, 11), (9, 99), (1, 11), (10.5, 99)])
+def test_tables_clip_it_and_say_so(table):
+    """Also where one end of the band, or both, lie beyond the tables: the resonance is never left out with them."""
+    scale = DIAMETER / 1.5e-5
+    asked = case({"speed": max(10, table[0]), "strouhal": [[U * scale, STROUHAL] for U in table]})
+    within = operating_range(asked)
+    assert within.wind == pytest.approx((max(LOW, table[0]), min(HIGH, table[1])), rel=1e-12)
+    assert not within.closed(0)
+    assert not within.closed(1)
+    assert any("nothing is known beyond" in sentence for sentence in within.basis)
+
+
+def test_where_the_shedding_frequency_falls_with_the_wind_the_range_ends():
+    scale = DIAMETER / 1.5e-5
+    table = [[1 * scale, 0.2], [11 * scale, 0.2], [11.2 * scale, 0.15], [99 * scale, 0.15]]
+    within = operating_range(case({"strouhal": table}))
+    assert within.wind == pytest.approx((LOW, 11), rel=1e-12)
+    assert any("falls with the wind" in sentence for sentence in within.basis)
+    with pytest.raises(frahm.ParameterError, match="ascends"):
+        operating_range(case({"strouhal": table}), wind=(9, 12))
+
+
+@pytest.mark.parametrize(("speed", "ends"), [(30.0, (LOW, 30.0)), (2.0, (2.0, HIGH))])
+def test_a_design_wind_far_off_is_part_of_it(speed, ends):
+    assert operating_range(case({"speed": speed})).wind == pytest.approx(ends, rel=1e-12)
+
+
+def test_of_a_site_too_calm_for_the_mode_the_strongest_winds_are_looked_at():
+    within = operating_range(case({"speed": 5, "range": [0, 5]}))
+    assert within.wind == pytest.approx((5 / 1.2, 5.0))
+    assert any("No wind of the site excites the mode" in sentence for sentence in within.basis)
+    assert operating_range(case({"speed": 4, "range": [0, 5]})).wind == (4.0, 5.0)
+
+
+def test_lift_and_wind_follow_the_frequency():
+    within = operating_range(case({"speed": 12}))
+    for speed in np.linspace(LOW, HIGH, 7):
+        W = 2 * math.pi * STROUHAL * speed / DIAMETER
+        assert within.lift_factor(W) == pytest.approx((speed / 12) ** 2, rel=1e-9)
+        assert float(within.speed(W)) == pytest.approx(speed, rel=1e-12)
+    assert within.lift == pytest.approx(0.5 * 1.225 * 12**2 * DIAMETER * 16 * 0.3)
+
+
+def test_parts_stretches_and_widenings():
+    within = operating_range(case())
+    lo, hi = within.frequency
+    middle = 0.5 * (lo + hi)
+    part = within.part(0.5 * lo, middle)
+    assert part.frequency == (lo, middle)
+    assert part.wind == pytest.approx((LOW, middle / lo * LOW), rel=1e-12)
+    stretched = within.stretched(0.9, 1.1)
+    assert stretched.wind == pytest.approx((0.9 * LOW, 1.1 * HIGH), rel=1e-9)
+    widened = within.widened()
+    assert widened.wind == pytest.approx((LOW - 0.25 * (HIGH - LOW), HIGH + 0.25 * (HIGH - LOW)), rel=1e-12)
+    for wider in (part, stretched, widened):
+        assert wider.lift_factor(middle) == pytest.approx(within.lift_factor(middle), rel=1e-9)
+    site = operating_range(case({"range": [8, 13]}))
+    assert site.stretched(0.5, 2).wind == (8.0, 13.0)
+    assert site.widened().wind == pytest.approx((8.0, 13.0))
+
+
+def test_a_window_at_one_lift():
+    within = operating_range(case(analysis={"detuning": [-0.4, 0.5]}))
+    omega = 2 * math.pi * FREQUENCY
+    assert not within.over_wind
+    assert not within.moves
+    assert within.frequency == pytest.approx((omega - 0.4, omega + 0.5))
+    assert within.lift_factor(omega) == 1.0
+    assert math.isnan(within.speed(omega))
+    assert within.widened().detuning == pytest.approx((-0.625, 0.725))
+    assert within.stretched(0.9, 1.1).frequency == pytest.approx((0.9 * (omega - 0.4), 1.1 * (omega + 0.5)))
+    assert not within.closed(0)
+
+
+def test_winds_that_are_given_are_all_that_is_asked():
+    given = operating_range(case(analysis={"wind": [9, 10]}))
+    assert given.wind == (9.0, 10.0)
+    assert not given.moves
+    assert operating_range(case(analysis={"detuning": [-1, 1]}), wind=(9, 10)).wind == (9.0, 10.0)
+
+
+def test_every_other_mode_has_its_own_band():
+    pipe = {"kind": "tube", "diameter": "8 inch", "wall": "6 mm", "length": "30 m", "damping_ratio": 0.002,
+            "supports": [{"at": 0, "kind": "pinned"}, {"at": "30 m", "kind": "pinned"}], "mode_count": 3}  # fmt: skip
+    wind = {"speed": 0.7, "strouhal": STROUHAL, "lift_coefficient": 0.3, "range": [0, 6]}
+    slender = frahm.load_case({"name": "slender", "pipe": pipe, "wind": wind, "absorbers": []})
+    first = slender.pipe.frequency / 2 / math.pi * 8 * 0.0254 / STROUHAL
+    found = other_modes(slender)
+    bands = [np.array([n**2 / 1.2, min(n**2 / 0.8, 6 / first)]) * first for n in (1, 2, 3)]  # pinned: f_n ~ n^2
+    assert operating_range(slender).wind == pytest.approx(bands[0], rel=1e-6)
+    expected = [(n, band) for n, band in zip((2, 3), bands[1:], strict=True) if band[0] < band[1]]
+    assert [other.pipe.governing_mode for other, _ in found] == [n for n, _ in expected]
+    for (_, within), (_, band) in zip(found, expected, strict=True):
+        assert within.wind == pytest.approx(band, rel=1e-6)
+    assert expected  # at least the second mode is excited
+    assert other_modes(slender.with_analysis(wind=(1, 2))) == ()
+    assert len(excited_bands(slender)) == 3
+
+
+@pytest.mark.parametrize(
+    ("wind", "says"),
+    [((12, 10), "lo < hi"), ((-1, 10), r"wind\[0\]"), ((1, math.nan), r"wind\[1\]"), (9, "two wind speeds")],
+)
+def test_bad_winds_are_refused(wind, says):
+    with pytest.raises(frahm.ParameterError, match=says):
+        operating_range(case(), wind=wind)
+
+
+def test_winds_beyond_a_table_and_two_windows_at_once_are_refused():
+    scale = DIAMETER / 1.5e-5
+    with pytest.raises(frahm.ParameterError, match="wind"):
+        operating_range(case({"strouhal": [[9 * scale, 0.2], [11 * scale, 0.2]]}), wind=(9, 12))
+    with pytest.raises(frahm.ParameterError, match=r"analysis\.wind"):
+        case(analysis={"wind": [9, 10], "detuning": [-1, 1]})
