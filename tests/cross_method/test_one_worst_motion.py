@@ -40,7 +40,7 @@ def test_a_verified_worst_holds_over_a_range_twice_as_wide(name, kind):
     assert worst.pipe_peak >= 0.98 * largest
     assert worst.motion.pipe_peak == max(
         attractor.pipe_peak for part in (worst, *worst.others) for survey in part.surveys for attractor in survey
-        if attractor.basin_fraction >= part.min_basin
+        if not attractor.basin_fraction < part.min_basin  # an unknown share counts
     )  # fmt: skip
 
 
