@@ -14,6 +14,7 @@ import numpy as np
 from frahm import __version__
 from frahm.analysis.acceptance import acceptance, judged_limits
 from frahm.analysis.cross_check import cross_check
+from frahm.analysis.decision import decision
 from frahm.analysis.fatigue import fatigue
 from frahm.analysis.gusts import gusts
 from frahm.analysis.linear import without_absorber
@@ -70,6 +71,7 @@ STEPS = (
     Step("largest motion", largest_motion),
     Step("lock-in", lock_in),
     Step("acceptance", acceptance),
+    Step("devices compared", decision),
 )
 
 

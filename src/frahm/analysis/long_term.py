@@ -9,7 +9,7 @@ import numpy as np
 from frahm.analysis.linear import others_of
 from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
 from frahm.assessment import with_stress
-from frahm.attractors import Attractor, WorstCase, WorstMotion, find_attractors, joined, worst_over
+from frahm.attractors import Attractor, WorstCase, WorstMotion, find_attractors, joined, lasting_motions, worst_over
 from frahm.case import Case
 from frahm.errors import ParameterError
 from frahm.harmonic_balance import is_linear
@@ -70,6 +70,7 @@ def worst(work: Work) -> Section:
     )
     return Section(
         results={"range": _range_row(work), "worst_case": row, "other_modes": modes, "coexisting": several},
+        data={"lasting": lasting_motions(parts)},
         unverified=motion.unverified,
         notes=work.range.basis,
     )

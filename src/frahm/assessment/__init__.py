@@ -3,6 +3,7 @@
 from frahm.assessment.acceptance import Utilisation, accepted, utilisations
 from frahm.assessment.closed_forms import constant_range_damage, weibull_damage
 from frahm.assessment.damage import FatigueDamage
+from frahm.assessment.device_row import device_row
 from frahm.assessment.fatigue import fatigue_damage
 from frahm.assessment.rainflow_cycles import CONVENTION, Cycles, rainflow_cycles, turning_points
 from frahm.assessment.spring_fatigue import transverse_spring_cycles
@@ -15,6 +16,7 @@ __all__ = [
     "Utilisation",
     "accepted",
     "constant_range_damage",
+    "device_row",
     "fatigue_damage",
     "rainflow_cycles",
     "stress_places",

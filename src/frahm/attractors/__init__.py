@@ -3,6 +3,7 @@
 from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.attractors.basins import basin_map
 from frahm.attractors.finding import find_attractors
+from frahm.attractors.lasting import lasting_motions
 from frahm.attractors.modulated import modulated_response
 from frahm.attractors.modulated_branches import modulated_branches
 from frahm.attractors.modulated_curve import ModulatedCurve
@@ -20,6 +21,7 @@ __all__ = [
     "driven_at",
     "find_attractors",
     "joined",
+    "lasting_motions",
     "modulated_branches",
     "modulated_response",
     "worst_case",

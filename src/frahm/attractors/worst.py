@@ -57,6 +57,8 @@ class WorstCase:
     surveys : tuple of AttractorSet
         All frequencies looked at, ascending.
     min_basin : float
+    curve : ResponseCurve
+        Every periodic response over the range and half as much beside it.
     others : tuple of WorstCase
         Of the other modes that winds of the site excite, each over the winds that do; `motion` is the worst of all.
     """
@@ -67,6 +69,7 @@ class WorstCase:
     not_excluded: float
     surveys: tuple[AttractorSet, ...]
     min_basin: float
+    curve: ResponseCurve
     others: tuple[WorstCase, ...] = ()
 
     @property
@@ -458,4 +461,5 @@ def _concluded(
         not_excluded=float(np.nanmax([*possible, worst.pipe_peak])),
         surveys=tuple(surveys[at] for at in sorted(surveys)),
         min_basin=min_basin,
+        curve=curve,
     )

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from frahm.assessment import fatigue_damage, with_stress
-from frahm.attractors import WorstCase, WorstMotion, joined, worst_over
+from frahm.attractors import WorstCase, WorstMotion, joined, lasting_motions, worst_over
 from frahm.case import Case
 from frahm.design.problem import Problem
 from frahm.loads import other_modes
 from frahm.systems import build_system
 
+if TYPE_CHECKING:
+    import xarray as xr
 
-def worst_motion(case: Case, problem: Problem, nominal: WorstCase | None) -> WorstMotion:
-    """The worst motion of the pipe as given with a device, by the very search of `frahm run`.
+
+def worst_motion(case: Case, problem: Problem, nominal: WorstCase | None) -> tuple[WorstMotion, xr.Dataset]:
+    """The worst motion of the pipe as given with a device, by the very search of `frahm run`, and all that last.
 
     Parameters
     ----------
@@ -28,10 +31,11 @@ def worst_motion(case: Case, problem: Problem, nominal: WorstCase | None) -> Wor
     within, settings = problem.within, problem.settings
     asked: dict[str, Any] = {"samples": settings.samples, "seed": settings.seed, "min_basin": 0.0}
     first = worst_over(build_system(case), within, **asked) if nominal is None else nominal
-    motions = [with_stress(case, first)]
+    parts, motions = [first], [with_stress(case, first)]
     for other, part in other_modes(case, problem.most_mass_ratio) if within.moves else ():
-        motions.append(with_stress(other, worst_over(build_system(other), part, **asked, sampled=False)))
-    return joined(motions)
+        parts.append(worst_over(build_system(other), part, **asked, sampled=False))
+        motions.append(with_stress(other, parts[-1]))
+    return joined(motions), lasting_motions(parts)
 
 
 def fatigue_row(case: Case) -> dict[str, Any] | None:

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm import __version__
-from frahm.assessment import accepted, utilisations
+from frahm.assessment import accepted, device_row, utilisations
 from frahm.attractors import WorstCase, WorstMotion
 from frahm.case import FAMILIES, Case, Design, load_case
 from frahm.design.absorber import DesignedAbsorber, absorber_of, parameters_text, with_design, without_first
 from frahm.design.completing import fatigue_row, worst_motion
 from frahm.design.disturbance import Disturbance
-from frahm.design.exact import Windows, exact_birth
+from frahm.design.exact import exact_birth
 from frahm.design.finalists import Finalist, finalists
 from frahm.design.hardware import Hardware, as_built, hardware
 from frahm.design.objective import Objective
@@ -34,6 +34,8 @@ from frahm.systems import System, build_system
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    import xarray as xr
 
 Progress = Callable[[str, int, int], None]
 _MOST_FINALISTS = 4
@@ -53,6 +55,7 @@ class _Found:
 
     best: Rival | None = None
     rivals: dict[str, Rival] = field(default_factory=dict)
+    lasting: dict[str, xr.Dataset] = field(default_factory=dict)
     table: dict[str, tuple[float, ...]] = field(default_factory=dict)
     sure: dict[str, tuple[bool, ...]] = field(default_factory=dict)
     trade_off: list[MarginPoint] = field(default_factory=list)
@@ -345,7 +348,7 @@ class _Designing:
         for name, rival in list(self.found.rivals.items()):
             case = self._rival_case(rival)
             nominal = self.nominal.get(name if name in ("none", "case") else rival.design)
-            worst = worst_motion(case, self.problem, nominal)
+            worst, self.found.lasting[name] = worst_motion(case, self.problem, nominal)
             bounded = self.objective.name == "peak" and self.settings.quantile is None
             value = max(rival.value, worst.pipe_peak) if bounded else rival.value
             whole = replace(rival, worst=worst, value=value, fatigue=fatigue_row(case))
@@ -356,6 +359,15 @@ class _Designing:
     def _acceptance(self, best: Rival) -> dict[str, Any]:
         rows = utilisations(self.case, {**best.worst.row(), "relative_peak": best.relative_peak}, best.fatigue)
         return accepted(rows, best.verified)
+
+    def _decision(self, rivals: Sequence[Rival]) -> dict[str, Any]:
+        """Every device in one table, as `frahm run` has it."""
+        rows = []
+        for rival in rivals:
+            worst = {**rival.worst.row(), "relative_peak": rival.relative_peak}
+            rows.append(device_row(rival.name, self._rival_case(rival), worst, rival.fatigue, rival.unverified))
+        over = "wind" if self.problem.within.over_wind else "detuning"
+        return {"over": over, "range": self.problem.within.text, "rows": rows, "remarks": {}}
 
     def _made(self) -> None:
         """The chosen design as hardware, with its tolerances and slopes, and with the force the springs really have."""
@@ -381,8 +393,8 @@ class _Designing:
 
     def _error_table(self) -> None:
         """Every device at every frequency error, not retuned."""
-        wide, objective, within = self.problem.wide, Objective(), self.problem.within
-        windows = self.problem.windows if within.over_wind else Windows(wide, wide, True)
+        objective, windows = Objective(), self.problem.windows_of_errors
+        lock_in = not self.problem.within.over_wind
         if not self.settings.errors:
             return
         for name, rival in sorted(self.found.rivals.items()):
@@ -392,7 +404,7 @@ class _Designing:
             def row(error: float, system: System = system, rival: Rival = rival) -> WorstMotion:
                 if error == 1:  # known already, and better
                     return rival.worst
-                one = Disturbance(pipe_frequency=error, lock_in=not within.over_wind)
+                one = Disturbance(pipe_frequency=error, lock_in=lock_in)
                 return verification(
                     system, windows, [one], objective, samples=_TABLE_SAMPLES, seed=self.settings.seed, quick=True
                 ).motion
@@ -477,6 +489,8 @@ class _Designing:
             best=best,
             best_case=self._best_case(best.design).with_name(name, title),
             acceptance=self._acceptance(best),
+            decision=self._decision(rivals),
+            lasting={rival.name: found.lasting[rival.name] for rival in rivals if rival.name in found.lasting},
             comparison=rivals,
             errors=self.settings.errors,
             error_table=found.table,

@@ -97,6 +97,11 @@ class Problem:
         self._host(None if self.settings.position is None else self.settings.position[1])
 
     @property
+    def windows_of_errors(self) -> Windows:
+        """Where a pipe off its frequency is looked at: its winds, or all frequencies a fixed lift may lock in to."""
+        return self.windows if self.within.over_wind else Windows(self.wide, self.wide, True)
+
+    @property
     def screened(self) -> int:
         """Designs judged by the closed form so far."""
         return self._tried + sum(tier.count for tier in self.tiers.values())

@@ -38,7 +38,11 @@ def design_summary(study: DesignStudy) -> dict[str, Any]:
         "schema": SCHEMA,
         "frahm": study.version,
         "case": study.case.to_dict(),
-        "results": {"design": _plain(study.results()), "acceptance": _plain(study.acceptance)},
+        "results": {
+            "design": _plain(study.results()),
+            "acceptance": _plain(study.acceptance),
+            "decision": _plain(study.decision | {"frequency_errors": study.frequency_errors()}),
+        },
         "checks": [
             {
                 "name": f"Worst case of {rival.name} over all attractors",

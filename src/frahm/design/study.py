@@ -162,6 +162,10 @@ class DesignStudy:
     version : str
     acceptance : dict
         The best design against the limits of the case: verdict and utilisations.
+    decision : dict
+        Rows of the table that decides, see `frahm.assessment.device_row`.
+    lasting : dict of str to Dataset
+        Largest lasting motions of every device over the range, see `frahm.attractors.lasting_motions`.
     """
 
     case: Case
@@ -186,6 +190,8 @@ class DesignStudy:
     interrupted: bool
     version: str
     acceptance: dict[str, Any] = field(default_factory=dict)
+    decision: dict[str, Any] = field(default_factory=dict)
+    lasting: dict[str, xr.Dataset] = field(default_factory=dict)
 
     @property
     def objective(self) -> Objective:
@@ -212,6 +218,14 @@ class DesignStudy:
         at = self.errors.index(error)
         return sorted(self.error_table, key=lambda name: self.error_table[name][at])
 
+    def frequency_errors(self) -> dict[str, Any]:
+        """Worst pipe peaks [m] of the devices at every error of the pipe's frequency [-], and whether each holds."""
+        return {
+            "error": [error - 1.0 for error in self.errors],
+            "pipe_peak": {name: list(values) for name, values in self.error_table.items()},
+            "verified": {name: list(values) for name, values in self.error_verified.items()},
+        }
+
     def results(self) -> dict[str, Any]:
         """Plain data for the summary, in SI units."""
         return {
@@ -224,11 +238,7 @@ class DesignStudy:
             "headline": self.headline,
             "acceptance": self.acceptance,
             "ranking": {f"{100 * (error - 1):+.3g} %": self.ranking(error) for error in self.errors},
-            "frequency_errors": {
-                "error": [error - 1.0 for error in self.errors],
-                "pipe_peak": {name: list(values) for name, values in self.error_table.items()},
-                "verified": {name: list(values) for name, values in self.error_verified.items()},
-            },
+            "frequency_errors": self.frequency_errors(),
             "trade_off": [
                 {"force_margin": p.force_margin, **p.design.parameters, "value": p.value,
                  "worst_pipe_peak": p.worst_pipe_peak, "verified": p.verified, "tier": p.tier}

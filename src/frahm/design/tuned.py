@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
-from frahm.errors import check_number
+from frahm.case import Absorber, Case, LinearLaw
+from frahm.errors import ParameterError, check_number
 
 
 def equal_peak(mass_ratio: float) -> tuple[float, float, float]:
@@ -50,3 +52,28 @@ def den_hartog(mass_ratio: float) -> tuple[float, float, float]:
     """
     mu = check_number("mass_ratio", mass_ratio, above=0)
     return 1 / (1 + mu), math.sqrt(3 * mu / (8 * (1 + mu) ** 3)), math.sqrt(1 + 2 / mu)
+
+
+def textbook_damper(case: Case, mass_ratio: float = 0.02) -> Case:
+    """The case with one tuned mass damper of equal peaks in place of all its absorbers, and with their mass.
+
+    It hangs where the first of them does, or where the governing mode moves most; the mass of that mode is felt there.
+
+    Parameters
+    ----------
+    case : Case
+    mass_ratio : float
+        Mass over that of the pipe of a case without absorbers [-].
+    """
+    pipe, old = case.pipe, case.absorbers
+    mass = sum(absorber.mass for absorber in old) if old else mass_ratio * pipe.mass
+    place = old[0].position if old else None
+    moves = float(pipe.modal.displacement(place)[0])
+    if moves == 0:
+        raise ParameterError("absorbers[0].position", place, "a section that the governing mode moves")
+    ratio, damping_ratio, _ = equal_peak(mass * moves**2 / pipe.mass)
+    omega = ratio * pipe.frequency
+    law = LinearLaw(stiffness=mass * omega**2, damping=2 * damping_ratio * mass * omega)
+    given: dict[str, Any] = {"name": "tuned mass damper", "mass": mass, "law": law}
+    damper = Absorber(**(given if place is None else given | {"position": place}))
+    return Case(**({key: getattr(case, key) for key in case.model_fields_set} | {"absorbers": (damper,)}))
