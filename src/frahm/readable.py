@@ -10,12 +10,27 @@ _MILLE = 1e3
 
 def length(value: float) -> str:
     """A displacement [m] in millimetres."""
-    return f"{_digits(_MILLE * value)} mm"
+    return f"{in_mm(value)} mm"
+
+
+def in_mm(value: float | None) -> str:
+    """The number of a displacement [m] in a column of millimetres; a dash for what is not known."""
+    return _in_column(value, _MILLE)
 
 
 def stress(value: float) -> str:
     """A stress [Pa] in megapascals."""
-    return f"{_digits(value / 1e6)} MPa"
+    return f"{in_mpa(value)} MPa"
+
+
+def in_mpa(value: float | None) -> str:
+    """The number of a stress [Pa] in a column of megapascals; a dash for what is not known."""
+    return _in_column(value, 1e-6)
+
+
+def motion(kind: str) -> str:
+    """A kind of motion in the one word that people read: a quasi-periodic one is a modulated one."""
+    return {"quasi-periodic": "modulated"}.get(kind, kind)
 
 
 def frequency(value: float) -> str:
@@ -38,6 +53,12 @@ def speed(value: float) -> str:
 def share(value: float) -> str:
     """A ratio in per cent, or as a multiple where it is large."""
     return f"{value:.0%}" if value < 10 else f"{value:.0f} times"
+
+
+def _in_column(value: float | None, factor: float) -> str:
+    if value is None or math.isnan(value):
+        return "-"
+    return _digits(factor * value) if math.isfinite(value) else "without bound"
 
 
 def _digits(value: float) -> str:

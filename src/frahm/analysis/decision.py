@@ -21,7 +21,7 @@ from frahm.design.settings import settings_for
 from frahm.design.tuned import textbook_damper
 from frahm.errors import ParameterError
 from frahm.harmonic_balance import is_linear
-from frahm.loads import OperatingRange, operating_range, other_modes
+from frahm.loads import OperatingRange, operating_range, other_modes, vortex_shedding
 from frahm.systems import build_system
 
 if TYPE_CHECKING:
@@ -64,7 +64,11 @@ def decision(work: Work) -> Section:
         "frequency_errors": _frequency_errors(work, devices, rows),
     }
     return Section(
-        results={"decision": found},
+        results={
+            "decision": found,
+            "natural_frequency": work.case.pipe.frequency,
+            "design_detuning": float(vortex_shedding(work.case).detuning),
+        },
         data={"decision": together({name: curves[name] for name in names if name in curves})},
         notes=notes,
     )

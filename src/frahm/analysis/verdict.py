@@ -75,9 +75,8 @@ def _from_worst_case(work: Work) -> list[dict[str, Any]]:
     found = work.done.results.get("worst_case")
     if found is None or not math.isfinite(found["pipe_peak"]):
         return []
-    kind = "modulated" if found["kind"] == "quasi-periodic" else found["kind"]
     row = {name: found[name] for name in ("pipe_peak", "relative_peak", "detuning", "wind_speed")}
-    return [{**row, "kind": kind, "source": found["tier"]}]
+    return [{**row, "kind": readable.motion(found["kind"]), "source": found["tier"]}]
 
 
 def _from_response(work: Work) -> list[dict[str, Any]]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _OWN_FILES = ("summary.json", "report.html", "report.pdf", "results.nc", "best.yaml")
 
 _OWN_FIGURES = (
-    "response-*", "motion-*", "slow-manifold*", "basin-map*", "unsteady-wind*", "fatigue*", "design-*",
+    "response-*", "motion-*", "slow-manifold*", "basin-map*", "unsteady-wind*", "fatigue*", "design-*", "decision*",
 )  # fmt: skip
 
 

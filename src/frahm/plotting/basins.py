@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from frahm import readable
 from frahm.plotting.style import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILLION, new_figure
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def basin_entries(data: xr.Dataset) -> list[Entry]:
 
 def _name(kind: str, attractor: xr.Dataset) -> str:
     share = 100 * float(attractor["basin_fraction"])
-    return f"{kind}, pipe {float(attractor['pipe_peak']):#.3g} m ({share:.3g} % of the map)"
+    return f"{readable.motion(kind)}, pipe {readable.length(float(attractor['pipe_peak']))} ({share:.3g} % of the map)"
 
 
 def basin_indices(data: xr.Dataset) -> np.ndarray:

@@ -8,29 +8,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm.exchange import write_data
+from frahm.plotting.decision import DEVICE_LOOKS, DEVICES, Marks, decision_figure
 from frahm.plotting.static import response_figure
-from frahm.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, VERMILLION, figure_style, new_figure, save_figure
+from frahm.plotting.style import GREY, INK, VERMILLION, figure_style, new_figure, save_figure
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-_LOOKS = {
-    "none": (GREY, ":", "s"),
-    "case": (ORANGE, "--", "v"),
-    "sink": (VERMILLION, "-", "o"),
-    "tuned mass damper": (BLUE, "-.", "^"),
-    "mixed": (GREEN, (0, (5, 1.5)), "D"),
-}
-_LABELS = {"none": "no absorber", "case": "the case's own", "mixed": "linear and cubic"}
 
-
-def save_design_figures(data: xr.Dataset, folder: str | Path, curve: xr.Dataset) -> list[Path]:
+def save_design_figures(
+    data: xr.Dataset, folder: str | Path, curve: xr.Dataset, lasting: xr.Dataset, marks: Marks
+) -> list[Path]:
     """Draw what the dataset of a design study holds into an existing folder, as PNG and SVG, with CSV; return paths.
 
-    `curve` is the exact response with the chosen design.
+    `curve` is the exact response with the chosen design, `lasting` what lasts with every device.
     """
     drawings = [
+        ("decision", "", lambda: decision_figure(lasting, marks)),
         ("design-comparison", "rival", lambda: comparison_figure(data)),
         ("design-response", "point", lambda: response_figure(curve, "pipe_peak", [], None, None, None)),
     ]
@@ -42,7 +37,8 @@ def save_design_figures(data: xr.Dataset, folder: str | Path, curve: xr.Dataset)
     with figure_style():
         for name, _, draw in drawings:
             paths += save_figure(draw(), Path(folder) / name)
-    for name, dimension, _ in drawings:
+    paths += write_data(lasting, Path(folder) / "decision.csv")
+    for name, dimension, _ in drawings[1:]:
         paths += write_data(_shown(curve if dimension == "point" else data, dimension), Path(folder) / f"{name}.csv")
     return paths
 
@@ -54,7 +50,7 @@ def _shown(data: xr.Dataset, dimension: str) -> xr.Dataset:
         names = data["error_pipe_peak"].attrs["names"].split(", ")
         for row, name in enumerate(names):
             kept[name.replace(" ", "_").replace("-", "_")] = data["error_pipe_peak"][row].drop_attrs().assign_attrs(
-                units="m", long_name=f"largest pipe peak with device: {_LABELS.get(name, name)}"
+                units="m", long_name=f"largest pipe peak with device: {DEVICES[name]}"
             )  # fmt: skip
     return kept
 
@@ -67,12 +63,12 @@ def comparison_figure(data: xr.Dataset) -> Figure:
     figure = new_figure(160, 22 + 11 * len(names))
     axes = figure.subplots()
     for row, (name, peak, verified) in enumerate(zip(names, peaks, sure, strict=True)):
-        color = _LOOKS[name][0]
+        color = DEVICE_LOOKS[name][0]
         axes.barh(row, peak, color=color if verified else "white", edgecolor=color, hatch=None if verified else "///")
         words = f"{peak:#.3g} {unit}".rstrip() + ("" if verified else ", unverified")
         axes.annotate(words, (peak, row), (4, 0), textcoords="offset points", va="center", color=INK)
     axes.set(xlim=(0, 1.2 * np.max(peaks)), xlabel=f"{title} over all attractors [{unit or '-'}]")
-    axes.set_yticks(range(len(names)), [_LABELS.get(name, name) for name in names])
+    axes.set_yticks(range(len(names)), [DEVICES[name] for name in names])
     axes.invert_yaxis()
     axes.grid(visible=False, axis="y")
     return figure
@@ -85,8 +81,8 @@ def frequency_error_figure(data: xr.Dataset) -> Figure:
     figure = new_figure(160, 100)
     axes = figure.subplots()
     for name, peaks, sure in zip(names, data["error_pipe_peak"].values, data["error_verified"].values, strict=True):
-        color, style, marker = _LOOKS[name]
-        axes.plot(errors, peaks, color=color, linestyle=style, label=_LABELS.get(name, name))
+        color, style, marker = DEVICE_LOOKS[name]
+        axes.plot(errors, peaks, color=color, linestyle=style, label=DEVICES[name])
         for error, peak, verified in zip(errors, peaks, sure, strict=True):
             axes.plot(error, peak, marker, color=color, markersize=5, markerfacecolor=color if verified else "white")
     axes.set_yscale("log")

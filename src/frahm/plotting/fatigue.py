@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.arrays import Floats
 from frahm.plotting.panels import name_panels, panels
 from frahm.plotting.plain import PlainFigure
@@ -21,9 +22,6 @@ DECADES = 7.0  # of damage that are shown: what lies lower adds nothing
 _MPA = 1e6
 _BARE_LOOK: dict[str, Any] = {"color": BARE, "linestyle": ":", "linewidth": 1.6}
 _MARKS = {"periodic": "o", "quasi-periodic": "D", "chaotic": "s", "unsettled": "x", "linear": ""}
-_NAMES = {
-    "periodic": "periodic", "quasi-periodic": "modulated", "chaotic": "chaotic", "unsettled": "unsettled",
-}  # fmt: skip
 
 
 def fatigue_figure(damage: xr.Dataset) -> Figure:
@@ -70,7 +68,7 @@ def fatigue_plot(damage: xr.Dataset) -> PlainFigure:
         figure.add_scatter(
             x=damage["speed"].values, y=damage["stress_range_with"].values / _MPA, mode="lines+markers",
             line={"color": PIPE, "width": 1}, showlegend=False, name="worst motion", row=2,
-            text=[kinds[code] for code in damage["kind"].values],
+            text=[readable.motion(kinds[code]) for code in damage["kind"].values],
             hovertemplate="%{x:.3f} m/s<br>%{y:.3g} MPa<br>%{text}",
         )  # fmt: skip
     decades = [float(np.log10(value)) for value in damage_range(damage)]
@@ -134,5 +132,5 @@ def _draw_worst(axes: Axes, damage: xr.Dataset) -> None:
         if here.any() and _MARKS[kind]:
             axes.plot(
                 speeds[here], ranges[here], _MARKS[kind], color=PIPE, markersize=3.5,
-                markerfacecolor="none" if kind == "periodic" else PIPE, label=_NAMES[kind],
+                markerfacecolor="none" if kind == "periodic" else PIPE, label=readable.motion(kind),
             )  # fmt: skip

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _WHOLE = {
+    "decision": "decision",
     "response": "response-harmonic-balance",
     "slow_flow": "response-slow-flow",
     "without_absorber": "response-without-absorber",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from frahm.exchange import write_data
 from frahm.plotting.basins import basin_map_figure
+from frahm.plotting.decision import decision_figure, marks_of
 from frahm.plotting.fatigue import fatigue_figure
 from frahm.plotting.figure_data import figure_data
 from frahm.plotting.over_wind import over_wind_figure
@@ -38,6 +39,8 @@ def save_figures(results: dict[str, Any], data: dict[str, xr.Dataset], folder: s
 def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[Drawing]:
     """Name and drawing of every figure the results allow."""
     views = motion_views(results, data)
+    if "decision" in data:
+        yield "decision", partial(decision_figure, data["decision"], marks_of(results))
     curve, bare = data.get("response"), data.get("without_absorber")
     if curve is not None:
         for quantity, name in (("pipe_peak", "response-pipe"), ("relative_peak", "response-absorber")):

@@ -9,17 +9,19 @@ from typing import Any
 import jinja2
 
 from frahm.analysis import defaulted_fields, provenance
-from frahm.case import Design, field_table, field_values
+from frahm.analysis.decision import together
+from frahm.case import Case, Design, field_table, field_values
 from frahm.design import DesignStudy, Objective, Rival, design_summary
 from frahm.errors import ParameterError
 from frahm.files import write_text
-from frahm.loads import vortex_shedding
+from frahm.loads import lock_in_band, vortex_shedding
+from frahm.plotting.decision import DEVICES, Marks
 from frahm.plotting.design_figures import save_design_figures
+from frahm.report import decision
+from frahm.report.document import document_rows
 from frahm.report.report import REPORT_FILE, image_address
 from frahm.report.tables import input_rows, number
 from frahm.response import frequency_response
-
-_NAMES = {"none": "no absorber", "case": "the case's own", "mixed": "linear and cubic"}
 
 
 def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
@@ -35,8 +37,8 @@ def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
         figures.mkdir(exist_ok=True)
     except OSError as error:
         raise ParameterError("DIR", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
-    curve = frequency_response(study.best_case, detuning=study.case.analysis.detuning).to_dataset()
-    drawn = save_design_figures(study.to_dataset(), figures, curve)
+    curve = frequency_response(study.best_case).to_dataset()
+    drawn = save_design_figures(study.to_dataset(), figures, curve, together(study.lasting), _marks(study.case))
     images = {file.stem: image_address(file.read_text(encoding="utf-8")) for file in drawn if file.suffix == ".svg"}
     write_text(path, render_design_report(study, images))
     return path
@@ -51,8 +53,7 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
     objective = study.objective
     return environment.get_template("design.html.jinja").render(
         study=study,
-        status="pass" if study.verified else "unverified",
-        headline=headline(study),
+        **_head(study),
         asked=asked_rows(study),
         comparison_head=comparison_head(objective),
         comparison=[*(comparison_row(rival, objective) for rival in study.comparison), ropes_row(objective)],
@@ -74,6 +75,28 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         missed=missed_below(study),
         images=images,
     )  # fmt: skip
+
+
+def _head(study: DesignStudy) -> dict[str, Any]:
+    """What the page that decides is made of."""
+    checks = [(check["name"], check["status"]) for check in design_summary(study)["checks"]]
+    return {
+        "deciding": decision,
+        "acceptance": study.acceptance,
+        "lead": study.verdict,
+        "decision": study.decision,
+        "errors": study.frequency_errors(),
+        "health": decision.numerical_checks(checks, study.unverified),
+        "unverified": study.unverified,
+        "interrupted": study.interrupted,
+        "titles": document_rows(study.case),
+    }
+
+
+def _marks(case: Case) -> Marks:
+    shedding, band, omega = vortex_shedding(case), lock_in_band(case), case.pipe.frequency
+    lo, hi = (omega * (ratio - 1) for ratio in band.ratios)
+    return Marks(case.wind.speed, float(shedding.detuning), (band.low, band.high), (lo, hi), band.standing)
 
 
 def check_rows(study: DesignStudy) -> list[tuple[str, str, str]]:
@@ -101,14 +124,6 @@ def least_stroke(study: DesignStudy) -> str:
     ratio = study.best.design.rho2 if study.best.design else math.nan
     case = study.case
     return number(vortex_shedding(case).lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
-
-
-def headline(study: DesignStudy) -> str:
-    """How far the study can be trusted, in a few words."""
-    if study.verified:
-        return "✓ verified over all attractors found"
-    best = "the chosen design is verified" if study.best.verified else "the chosen design is UNVERIFIED"
-    return f"? {len(study.unverified)} unverified; {best}"
 
 
 def asked_rows(study: DesignStudy) -> list[tuple[str, ...]]:
@@ -140,7 +155,7 @@ def comparison_row(rival: Rival, objective: Objective) -> tuple[str, ...]:
     """Name, parameters, worst peaks, force margin, what the numbers rest on."""
     design = rival.design
     parameters: tuple[Any, ...] = ("-",) * 4
-    name = _NAMES.get(rival.name, rival.name)
+    name = DEVICES[rival.name]
     if design is not None:
         parameters = tuple(number(getattr(design, name), 4) for name in ("rho2", "linear", "kappa", "xi2"))
         name += f", fifth power {number(design.quintic)} 1/(m⁴ s²)" if design.quintic else ""
@@ -172,7 +187,7 @@ def error_rows(study: DesignStudy) -> list[tuple[str, ...]]:
     """Worst pipe peaks of every device; a question mark where unverified."""
     return [
         (
-            _NAMES.get(name, name),
+            DEVICES[name],
             *(number(p) + ("" if s else " ?") for p, s in zip(peaks, study.error_verified[name], strict=True)),
         )
         for name, peaks in study.error_table.items()

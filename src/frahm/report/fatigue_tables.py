@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from frahm import readable
 from frahm.analysis import Analysis
 from frahm.report.tables import number
 
@@ -13,7 +14,6 @@ BIN_HEAD = [
 ]  # fmt: skip
 _MPA = 1e6
 _CASE, _COMPUTED = "given in the case", "computed"
-_KINDS = {"quasi-periodic": "modulated"}
 
 
 def method_sentence(analysis: Analysis) -> str:
@@ -77,7 +77,7 @@ def bin_rows(analysis: Analysis) -> list[tuple[str, ...]]:
             (
                 f"{columns['speed_lower'][i]:.4g} … {columns['speed_upper'][i]:.4g}", f"{columns['detuning'][i]:.3f}",
                 number(float(columns["probability"][i]), 3), _stress(float(columns["stress_range_with"][i])),
-                _stress(float(columns["stress_range_without"][i])), _KINDS.get(kinds[code], kinds[code]),
+                _stress(float(columns["stress_range_without"][i])), readable.motion(kinds[code]),
                 str(int(columns["attractors"][i])), _damage(float(columns["damage_with"][i])),
                 _damage(float(columns["damage_with_weighted"][i])), _damage(float(columns["damage_without"][i])),
             )

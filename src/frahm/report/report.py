@@ -10,8 +10,10 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
+import numpy as np
 from markupsafe import Markup
 
+from frahm import readable
 from frahm.analysis import Analysis, margin_sentence
 from frahm.errors import ParameterError
 from frahm.files import write_text
@@ -22,7 +24,8 @@ from frahm.plotting.over_wind import over_wind_plot
 from frahm.plotting.plain import PlainFigure
 from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
 from frahm.plotting.wind import gusts_plot
-from frahm.report import fatigue_tables, tables
+from frahm.report import decision, fatigue_tables, tables
+from frahm.report.document import document_rows
 
 REPORT_FILE = "report.html"
 _MOST_MOTIONS = 8
@@ -70,12 +73,10 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
     environment.filters["number"] = tables.number
     environment.filters["with_indices"] = tables.with_indices
     views = motion_views(analysis.results, analysis.data)
-    status, sentence = headline(analysis)
     plots = _plots(analysis, views)
     return environment.get_template("report.html.jinja").render(
         analysis=analysis,
-        status=status,
-        headline=sentence,
+        **_head(analysis),
         cards=cards(analysis.results),
         results=analysis.results,
         margin=margin_of(analysis.results),
@@ -85,10 +86,28 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         more_motions=max(0, len(views) - _MOST_MOTIONS),
         plots=plots,
         zoomed='"narrow":' in plots.get("response-pipe", ""),
-        images={name: image_address(svg) for name, svg in images.items() if name in plots},
+        images={name: image_address(svg) for name, svg in images.items() if name in {*plots, "decision"}},
         plotly_js=packed_plotly(),
         plotly_config=CONFIG,
     )
+
+
+def _head(analysis: Analysis) -> dict[str, Any]:
+    """What the page that decides is made of."""
+    results = analysis.results
+    found, sentence = results["acceptance"], results["acceptance"]["sentence"]
+    compared = results.get("decision")
+    return {
+        "deciding": decision,
+        "acceptance": found,
+        "lead": analysis.verdict.removeprefix(sentence).strip(),
+        "decision": compared,
+        "errors": compared["frequency_errors"] if compared else {},
+        "health": decision.numerical_checks([(c.name, c.status) for c in analysis.checks], analysis.unverified),
+        "unverified": analysis.unverified,
+        "interrupted": analysis.interrupted,
+        "titles": document_rows(analysis.case),
+    }
 
 
 def margin_of(results: dict[str, Any]) -> str:
@@ -141,33 +160,28 @@ def packed_plotly() -> str:
     return base64.b64encode(zlib.compress(script, 4)).decode()
 
 
-def headline(analysis: Analysis) -> tuple[str, str]:
-    """Status and a sentence on how far the results can be trusted."""
-    failed = sum(check.status == "fail" for check in analysis.checks)
-    doubts = len(analysis.unverified) + sum(check.status == "unverified" for check in analysis.checks)
-    if failed:
-        more = f", {doubts} unverified" if doubts else ""
-        return "fail", f"✗ {failed} of {len(analysis.checks)} checks failed{more}"
-    if doubts:
-        return "unverified", f"? {doubts} unverified"
-    return "pass", f"✓ all checks passed ({len(analysis.checks)})"
-
-
 def cards(results: dict[str, Any]) -> list[tuple[str, str, str]]:
     """The few numbers a reader looks for first: name, value, remark."""
     shown = []
     largest = results.get("largest_motion")
     if largest:
-        shown.append(("Largest pipe motion found", f"{largest['pipe_peak']:#.3g} m",
-                      f"{largest['kind']}, at σ = {largest['detuning']:.3g} rad/s"))  # fmt: skip
+        shown.append(("Largest pipe motion found", readable.length(largest["pipe_peak"]),
+                      f"{largest['kind']}, {_place(largest)}"))  # fmt: skip
         if results["has_absorber"] and largest["ratio_to_no_absorber"] is not None:
             bare = results["without_absorber"]["pipe_peak_max"]
             shown.append(("Share of the motion without absorber", f"{largest['ratio_to_no_absorber']:.1%}",
-                          f"of {bare:#.3g} m at resonance"))  # fmt: skip
-        if largest["stroke"] is not None:
-            shown.append(("Largest stroke of the absorber", f"{largest['stroke']:#.3g} m", "relative to the pipe"))
+                          f"of {readable.length(bare)} at resonance"))  # fmt: skip
+        if results["has_absorber"] and largest["stroke"] is not None:
+            shown.append(("Largest stroke of the absorber", readable.length(largest["stroke"]), "relative to the pipe"))
     if results.get("motions") and results["motions"][0]["pipe_peak"] is not None:
         motion = results["motions"][0]
-        shown.append(("At the design wind", f"{motion['pipe_peak']:#.3g} m",
-                      f"{motion['kind']}, from rest, σ = {motion['detuning']:.3g} rad/s"))  # fmt: skip
+        shown.append(("From rest at the design wind", readable.length(motion["pipe_peak"]),
+                      f"{motion['kind']}, without lock-in, {_place(motion)}"))  # fmt: skip
     return shown
+
+
+def _place(found: dict[str, Any]) -> str:
+    speed = found.get("wind_speed")
+    if speed is not None and np.isfinite(speed):
+        return f"at {readable.speed(speed)}"
+    return f"at σ = {found['detuning']:.3g} rad/s"

@@ -1,0 +1,118 @@
+"""The page that decides, at the head of a report: verdict, limits, devices and ranking as text ready to be read."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from frahm import readable
+from frahm.plotting.decision import DEVICES
+
+DEVICE_HEAD = [
+    "Device", "Peak [mm]", "At", "Motion", "A/D", "Stress range [MPa]", "Damage × factor", "Life", "Stroke [mm]",
+    "Limit used most", "Verified",
+]  # fmt: skip
+RANKING_HEAD = ["Frequency of the pipe off by", "Best first: worst pipe peak [mm]"]
+_STATUS = {"pass": "pass", "fail": "fail", "not verified": "unverified"}
+_BAR = 1.5  # utilisation that fills the bar
+
+
+def banner(acceptance: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Status for the colour, the verdict in capitals, and the sentence behind it.
+
+    A case without limits is not coloured as one that keeps them.
+    """
+    word = str(acceptance["verdict"])
+    status = "open" if word == "pass" and not acceptance["rows"] else _STATUS[word]
+    sentence = str(acceptance["sentence"]).removeprefix(word.upper()).lstrip(":. ")
+    return status, word.upper(), sentence[:1].upper() + sentence[1:]
+
+
+def limit_rows(acceptance: Mapping[str, Any]) -> list[tuple[str, str, str, float]]:
+    """Text, utilisation, status and length of the bar in per cent of every limit."""
+    rows = []
+    for row in acceptance["rows"]:
+        ratio = row["ratio"]
+        known = ratio is not None and not math.isnan(ratio)
+        status = "unverified" if not known else "fail" if ratio > 1 else "pass"
+        text = readable.share(ratio) if known else "not known"
+        rows.append((row["text"], text, status, 100 * min(ratio / _BAR, 1.0) if known else 0.0))
+    return rows
+
+
+def device_rows(decision: Mapping[str, Any]) -> list[tuple[str, ...]]:
+    """A row a device; what is unverified names its reason."""
+    return [_device(row, decision.get("remarks", {})) for row in decision["rows"]]
+
+
+def _device(row: Mapping[str, Any], remarks: Mapping[str, str]) -> tuple[str, ...]:
+    name = DEVICES[row["name"]]
+    remark = remarks.get(row["name"])
+    return (
+        f"{name} ({remark})" if remark else name, readable.in_mm(row["pipe_peak"]), _place(row),
+        readable.motion(row["kind"]), _plain(row["amplitude_ratio"]), readable.in_mpa(row["stress_range"]),
+        _plain(row["damage_times_factor"]), _life(row), readable.in_mm(row["stroke"]), _used(row),
+        "yes" if row["verified"] else "no: " + " ".join(row["unverified"]),
+    )  # fmt: skip
+
+
+def _place(row: Mapping[str, Any]) -> str:
+    speed = row["wind_speed"]
+    if speed is not None and math.isfinite(speed):
+        return readable.speed(speed)
+    return "-" if row["detuning"] is None else f"σ = {row['detuning']:.3g} rad/s"
+
+
+def _life(row: Mapping[str, Any]) -> str:
+    if row["damage"] is None:
+        return "-"
+    life = math.inf if row["life_years"] is None else row["life_years"]
+    return readable.duration(life * readable.YEAR)
+
+
+def _used(row: Mapping[str, Any]) -> str:
+    used = {name: ratio for name, ratio in row["utilisation"].items() if ratio is not None}
+    if not used:
+        return "no limit given"
+    name = max(used, key=lambda one: used[one])
+    words = f"{name.replace('_', ' ')} {readable.share(used[name])}"
+    return f"{words}: FAIL" if used[name] > 1 else words
+
+
+def _plain(value: float | None) -> str:
+    return "-" if value is None or math.isnan(value) else f"{value:.3g}"
+
+
+def ranking_rows(errors: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Devices in the order of their worst peak at every error of the pipe's frequency; "?" where one is unverified."""
+    if not errors or not errors["pipe_peak"]:
+        return []
+    rows = []
+    for i, error in enumerate(errors["error"]):
+        found = [(peaks[i], name, errors["verified"][name][i]) for name, peaks in errors["pipe_peak"].items()]
+        found.sort(key=lambda item: math.inf if item[0] is None else item[0])
+        words = (f"{DEVICES[name]} {readable.in_mm(peak)}{'' if sure else ' ?'}" for peak, name, sure in found)
+        rows.append((f"{100 * error:+.3g} %" if abs(error) > 1e-9 else "0 %", ", ".join(words)))
+    return rows
+
+
+def left_out_of_ranking(decision: Mapping[str, Any], errors: Mapping[str, Any]) -> str:
+    """The devices whose peaks under frequency errors are not known, as a sentence; empty if there are none."""
+    known = errors.get("pipe_peak", {})
+    missing = [DEVICES[row["name"]] for row in decision["rows"] if row["name"] not in known]
+    if not missing or not known:
+        return ""
+    return f"Not searched here: {' and '.join(missing)}; frahm design searches it."
+
+
+def numerical_checks(checks: Sequence[tuple[str, str]], unverified: Sequence[str]) -> tuple[str, str]:
+    """Status and sentence on the numerical health: name and status of every check, and what else is in doubt."""
+    failed = sum(status == "fail" for _, status in checks)
+    doubts = len(unverified) + sum(status == "unverified" for _, status in checks)
+    if failed:
+        more = f", {doubts} unverified" if doubts else ""
+        return "fail", f"✗ {failed} of {len(checks)} numerical checks failed{more}"
+    if doubts:
+        return "unverified", f"? {doubts} unverified"
+    return "sound", f"✓ all {len(checks)} numerical checks hold"
