@@ -9,6 +9,7 @@ import numpy as np
 
 from frahm.exchange import write_data
 from frahm.plotting.decision import DEVICE_LOOKS, DEVICES, Marks, decision_figure
+from frahm.plotting.lines import MM
 from frahm.plotting.static import response_figure
 from frahm.plotting.style import GREY, INK, VERMILLION, figure_style, new_figure, save_figure
 
@@ -59,7 +60,8 @@ def comparison_figure(data: xr.Dataset) -> Figure:
     """Value of the objective of every device as bars; what is unverified is hatched."""
     names = data["comparison_pipe_peak"].attrs["names"].split(", ")
     peaks, sure = data["comparison_value"].values, data["comparison_verified"].values.astype(bool)
-    title, unit = _titled(data["comparison_value"])
+    title, unit, factor = _titled(data["comparison_value"])
+    peaks = factor * peaks
     figure = new_figure(160, 22 + 11 * len(names))
     axes = figure.subplots()
     for row, (name, peak, verified) in enumerate(zip(names, peaks, sure, strict=True)):
@@ -82,11 +84,14 @@ def frequency_error_figure(data: xr.Dataset) -> Figure:
     axes = figure.subplots()
     for name, peaks, sure in zip(names, data["error_pipe_peak"].values, data["error_verified"].values, strict=True):
         color, style, marker = DEVICE_LOOKS[name]
-        axes.plot(errors, peaks, color=color, linestyle=style, label=DEVICES[name])
+        axes.plot(errors, MM * peaks, color=color, linestyle=style, label=DEVICES[name])
         for error, peak, verified in zip(errors, peaks, sure, strict=True):
-            axes.plot(error, peak, marker, color=color, markersize=5, markerfacecolor=color if verified else "white")
+            axes.plot(
+                error, MM * peak, marker, color=color, markersize=5, markerfacecolor=color if verified else "white"
+            )
     axes.set_yscale("log")
-    axes.set(xlabel="error of the pipe's natural frequency [%], devices not retuned", ylabel="worst pipe peak [m]")
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    axes.set(xlabel="error of the pipe's natural frequency [%], devices not retuned", ylabel="worst pipe peak [mm]")
     figure.legend(loc="outside lower center", ncols=3)
     return figure
 
@@ -94,7 +99,8 @@ def frequency_error_figure(data: xr.Dataset) -> Figure:
 def margin_figure(data: xr.Dataset) -> Figure:
     """Value of the objective of the best design under every force margin."""
     margin, peaks = data["force_margin"].values, data["margin_value"].values
-    title, unit = _titled(data["margin_value"])
+    title, unit, factor = _titled(data["margin_value"])
+    peaks = factor * peaks
     figure = new_figure(160, 85)
     axes = figure.subplots()
     axes.plot(margin, peaks, "-o", color=VERMILLION, markersize=5)
@@ -118,7 +124,7 @@ def margin_figure(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _titled(variable: xr.DataArray) -> tuple[str, str]:
-    """Long name and unit of a variable; no unit for a plain number."""
-    unit = variable.attrs["units"]
-    return variable.attrs["long_name"], "" if unit == "1" else unit
+def _titled(variable: xr.DataArray) -> tuple[str, str, float]:
+    """Long name, unit and factor to it of a variable: metres are shown as millimetres, a plain number as it is."""
+    name, unit = variable.attrs["long_name"], variable.attrs["units"]
+    return (name, "mm", MM) if unit == "m" else (name, "" if unit == "1" else unit, 1.0)

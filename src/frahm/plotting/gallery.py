@@ -36,6 +36,11 @@ def save_figures(results: dict[str, Any], data: dict[str, xr.Dataset], folder: s
     return paths
 
 
+def stands_over_wind(data: dict[str, xr.Dataset]) -> bool:
+    """Whether the response itself is over the wind, so that a figure over the wind would show it again."""
+    return "response" in data and "wind_speed" in data["response"]
+
+
 def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[Drawing]:
     """Name and drawing of every figure the results allow."""
     views = motion_views(results, data)
@@ -53,7 +58,7 @@ def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[D
                 )
     for view in views:
         yield f"motion-{view.key}", partial(motion_figure, view)
-    if "response_over_wind" in data:
+    if "response_over_wind" in data and not stands_over_wind(data):
         yield (
             "response-over-wind",
             partial(over_wind_figure, data["response_over_wind"], data["without_absorber_over_wind"]),

@@ -9,13 +9,15 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.plotting.basins import BASIN_AXES, basin_entries, basin_indices
 from frahm.plotting.lines import (
-    DETUNING_LABEL,
+    AXIS_LABELS,
     HEADROOM,
     KIND_NAMES,
+    MM,
     MODULATED_NAMES,
     MOST_LABELS,
     QUANTITY_LABELS,
     Line,
+    axis_of,
     beyond_the_top,
     envelopes,
     interesting_range,
@@ -23,6 +25,7 @@ from frahm.plotting.lines import (
     line_colour,
     line_width,
     lines_by_name,
+    resonance_of,
     response_lines,
     special_marks,
     thinned,
@@ -58,6 +61,7 @@ _SYMBOLS = {
     "period-doubling": "triangle-down",
     "branch-point": "cross",
 }
+HOVER = "%{x:.4f}<br>%{y:.4g} mm"
 _COLOURS = {"x1": PIPE, "z": SINK}
 _MODULATED_FILL = "rgba(0, 158, 115, 0.18)"
 _FILLS = {"x1": "rgba(0, 114, 178, 0.25)", "z": "rgba(213, 94, 0, 0.22)"}
@@ -80,14 +84,18 @@ def response_plot(
         for i, line in enumerate(lines_by_name(response_lines(slow, quantity)).values()):
             _add_line(figure, line, INK, 0.8, "slow flow", legendgroup="slow flow", showlegend=i == 0)
     if bare is not None and quantity == "pipe_peak":
-        x, y = single(bare["detuning"].values), single(bare["pipe_peak"].values)
+        x, y = single(bare[axis_of(bare)].values), single(MM * bare["pipe_peak"].values)
         dotted = {"color": BARE, "dash": "dot", "width": 1.5}
         figure.add_scatter(x=x, y=y, mode="lines", line=dotted, name="without absorber")
-    top = max([tallest, largest_finite(curve[quantity].values), *_add_motions(figure, motions, quantity)])
+    top = max(
+        [tallest, largest_finite(curve[quantity].values), *_add_motions(figure, motions, quantity, axis_of(curve))]
+    )
     _add_special_points(figure, curve, quantity)
     figure.update_layout(**plot_layout(520))
-    figure.update_axes("x", title={"text": DETUNING_LABEL})
-    figure.update_axes("y", title={"text": QUANTITY_LABELS[quantity], "standoff": 8}, range=[0, HEADROOM * top or 1.0])
+    figure.update_axes("x", title={"text": AXIS_LABELS[axis_of(curve)]})
+    figure.update_axes(
+        "y", title={"text": QUANTITY_LABELS[quantity], "standoff": 8}, range=[0, MM * HEADROOM * top or 1.0]
+    )
     if bare is not None and quantity == "pipe_peak":
         _name_what_leaves(figure, bare, HEADROOM * top)
     narrow = interesting_range(curve, modulated)
@@ -108,8 +116,8 @@ def _name_what_leaves(figure: PlainFigure, bare: xr.Dataset, top: float) -> None
 
 def _add_line(figure: PlainFigure, line: Line, colour: str, width: float, name: str, **more: Any) -> None:
     look = {"color": colour, "dash": "solid" if line.stable else "dash", "width": width}
-    hover = "σ %{x:.4f} rad/s<br>%{y:.4g} m"
-    x, y = single(line.x), single(line.y)
+    hover = HOVER
+    x, y = single(line.x), single(MM * line.y)
     figure.add_scatter(x=x, y=y, mode="lines", line=look, name=name, hovertemplate=hover, **more)
 
 
@@ -117,13 +125,13 @@ def _add_modulated(figure: PlainFigure, modulated: xr.Dataset, quantity: str) ->
     """Envelopes of modulated responses, the stable ones shaded; return the largest size drawn."""
     named, top = set(), 0.0
     for stretch in envelopes(modulated, quantity):
-        name, hover = MODULATED_NAMES[stretch.stable], "σ %{x:.4f} rad/s<br>%{y:.4g} m"
+        name, hover = MODULATED_NAMES[stretch.stable], HOVER
         look = {"color": GREEN, "width": 1, "dash": "solid" if stretch.stable else "dash"}
         common: dict[str, Any] = {"x": single(stretch.x), "mode": "lines", "line": look, "legendgroup": name}
         common |= {"name": name, "hovertemplate": hover}
-        figure.add_scatter(y=single(stretch.low), showlegend=False, **common)
+        figure.add_scatter(y=single(MM * stretch.low), showlegend=False, **common)
         fill: dict[str, Any] = {"fill": "tonexty", "fillcolor": _MODULATED_FILL} if stretch.stable else {}
-        figure.add_scatter(y=single(stretch.high), showlegend=stretch.stable not in named, **common, **fill)
+        figure.add_scatter(y=single(MM * stretch.high), showlegend=stretch.stable not in named, **common, **fill)
         named.add(stretch.stable)
         top = max(top, float(np.max(stretch.high)) if stretch.stable else 0.0)
     return top
@@ -159,21 +167,22 @@ def motion_plot(motion: MotionView) -> PlainFigure:
     for name in reversed(motion.signals):
         look: dict[str, Any] = {"color": _COLOURS[name], "width": 1}
         common: dict[str, Any] = {"legendgroup": name, "name": LABELS[name], "mode": "lines"}
-        time, low, high = (single(values) for values in motion.envelope[name])
+        time, low, high = motion.envelope[name]
+        time, low, high = single(time), single(MM * low), single(MM * high)
         figure.add_scatter(x=time, y=low, line=look, showlegend=False, row=1, **common)
         figure.add_scatter(x=time, y=high, line=look, fill="tonexty", fillcolor=_FILLS[name], row=1, **common)
         for row, (x, y) in ((2, motion.last[name]), (3, thinned(*motion.spectrum[name]))):
             dashed = look | {"dash": "solid" if name == "x1" or row == 3 else "dash"}
-            figure.add_scatter(x=single(x), y=single(y), line=dashed, showlegend=False, row=row, **common)
-    decades = [float(np.log10(value)) for value in motion.spectrum_range]
+            figure.add_scatter(x=single(x), y=single(MM * y), line=dashed, showlegend=False, row=row, **common)
+    decades = [float(np.log10(MM * value)) for value in motion.spectrum_range]
     figure.update_layout(**plot_layout(760))
     figure.update_axes("x", title={"text": "time [s], whole run"}, row=1)
     figure.update_axes("x", title={"text": "time [s], last periods"}, row=2)
     figure.update_axes("x", title={"text": "frequency [Hz]"}, range=[0, SHOWN_HARMONICS * motion.frequency_hz], row=3)
-    figure.update_axes("y", title={"text": "envelope [m]"}, row=1)
-    figure.update_axes("y", title={"text": "displacement [m]"}, row=2)
+    figure.update_axes("y", title={"text": "envelope [mm]"}, row=1)
+    figure.update_axes("y", title={"text": "displacement [mm]"}, row=2)
     figure.update_axes(
-        "y", title={"text": "amplitude [m]"}, type="log", range=decades, exponentformat="power", dtick=1, row=3
+        "y", title={"text": "amplitude [mm]"}, type="log", range=decades, exponentformat="power", dtick=1, row=3
     )
     return figure
 
@@ -185,7 +194,7 @@ def manifold_plot(manifold: xr.Dataset, motion: MotionView | None, folds: dict[s
         Z, X = motion.slow
         figure.add_scatter(
             x=single(Z), y=single(X), mode="lines", line={"color": GREEN, "width": 1},
-            name=f"motion at σ = {motion.detuning:.3g} rad/s",
+            name=f"motion at {motion.where}",
         )  # fmt: skip
     Z, X = manifold["relative_amplitude"].values, manifold["pipe_amplitude"].values
     attracting = manifold["attracting"].values > 0
@@ -215,7 +224,7 @@ def _add_folds(figure: PlainFigure, folds: dict[str, Any]) -> None:
         )  # fmt: skip
 
 
-def _add_motions(figure: PlainFigure, motions: list[MotionView], quantity: str) -> list[float]:
+def _add_motions(figure: PlainFigure, motions: list[MotionView], quantity: str, axis: str) -> list[float]:
     """Mark the integrated motions, a modulated one with the range of its peaks; return the heights."""
     heights: list[float] = []
     for kind, symbol in (("periodic", "circle-open"), ("modulated", "diamond"), ("unsettled", "x")):
@@ -225,11 +234,12 @@ def _add_motions(figure: PlainFigure, motions: list[MotionView], quantity: str) 
         ranges = [m.peaks(quantity) for m in chosen]
         high = [top for _, top in ranges]
         figure.add_scatter(
-            x=[m.detuning for m in chosen], y=high, mode="markers", name=f"integrated from rest, {kind}",
+            x=[m.place(axis) for m in chosen], y=[MM * top for top in high], mode="markers",
+            name=f"integrated from rest, {kind}",
             marker={"symbol": symbol, "size": 9, "color": GREEN},
             error_y={
                 "type": "data", "symmetric": False, "array": [0.0] * len(chosen), "color": GREEN, "thickness": 1,
-                "width": 0, "arrayminus": [top - low for low, top in ranges], "visible": kind != "periodic",
+                "width": 0, "arrayminus": [MM * (top - low) for low, top in ranges], "visible": kind != "periodic",
             },
         )  # fmt: skip
         heights += high
@@ -237,14 +247,14 @@ def _add_motions(figure: PlainFigure, motions: list[MotionView], quantity: str) 
 
 
 def _add_special_points(figure: PlainFigure, curve: xr.Dataset, quantity: str) -> None:
-    marks = special_marks(curve, quantity)
+    marks, middle = special_marks(curve, quantity), resonance_of(curve)
     mode = "markers+text" if len(marks) <= MOST_LABELS else "markers"
     for kind in dict.fromkeys(mark.kind for mark in marks):
         chosen = [mark for mark in marks if mark.kind == kind]
         height = "bottom" if kind == "saddle-node" else "top"
         figure.add_scatter(
-            x=[m.x for m in chosen], y=[m.y for m in chosen], text=[m.label for m in chosen], mode=mode,
-            textposition=[f"{height} {'right' if m.x > 0 else 'left'}" for m in chosen], name=KIND_NAMES[kind],
+            x=[m.x for m in chosen], y=[MM * m.y for m in chosen], text=[m.label for m in chosen], mode=mode,
+            textposition=[f"{height} {'right' if m.x > middle else 'left'}" for m in chosen], name=KIND_NAMES[kind],
             marker={"symbol": _SYMBOLS[kind], "size": 9, "color": INK}, cliponaxis=False,
         )  # fmt: skip
 

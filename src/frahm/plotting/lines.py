@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from frahm import readable
 from frahm.arrays import Floats
 from frahm.plotting.style import PAIR, PIPE, SINK
 
@@ -15,7 +16,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 DETUNING_LABEL = "detuning σ = Ω − ω [rad/s]"
-QUANTITY_LABELS = {"pipe_peak": "pipe displacement x₁ [m]", "relative_peak": "relative displacement z [m]"}
+SPEED_LABEL = "wind speed U [m/s]"
+AXIS_LABELS = {"detuning": DETUNING_LABEL, "wind_speed": SPEED_LABEL}
+QUANTITY_LABELS = {"pipe_peak": "pipe displacement x₁ [mm]", "relative_peak": "relative displacement z [mm]"}
 SHORT_NAMES = {
     "saddle-node": "SN",
     "hopf": "H",
@@ -31,6 +34,7 @@ KIND_NAMES = {
     "branch-point": "branch point",
 }
 MODULATED_NAMES = {True: "modulated (slow flow)", False: "the same, unstable"}
+MM = 1e3  # figures show millimetres
 HEADROOM = 1.2  # height of the axis over the largest response drawn
 MOST_LABELS = 16  # special points: with more of them the labels would hide what they name
 
@@ -72,11 +76,25 @@ def line_width(line: Line) -> float:
     return 2.4 if line.detached else 1.5
 
 
-def response_lines(curve: xr.Dataset, quantity: str, axis: str = "detuning") -> list[Line]:
-    """Stretches of every branch; neighbouring stretches share a point, so that no gap is seen between them."""
+def axis_of(curve: xr.Dataset) -> str:
+    """What a response stands over: the wind speed where the lift follows it, otherwise the detuning."""
+    return "wind_speed" if "wind_speed" in curve else "detuning"
+
+
+def resonance_of(curve: xr.Dataset) -> float:
+    """Where the detuning is nearest to nought, on the axis of `axis_of`."""
+    nearest = int(np.argmin(np.abs(curve["detuning"].values)))
+    return float(curve[axis_of(curve)].values[nearest]) if axis_of(curve) == "wind_speed" else 0.0
+
+
+def response_lines(curve: xr.Dataset, quantity: str, axis: str | None = None) -> list[Line]:
+    """Stretches of every branch over `axis`, by default that of `axis_of`.
+
+    Neighbouring stretches share a point, so that no gap is seen between them.
+    """
     branch, piece = curve["branch"].values, curve["piece"].values
     stable, detached, asymmetric = (curve[name].values.astype(bool) for name in ("stable", "detached", "asymmetric"))
-    x, y = curve[axis].values, curve[quantity].values
+    x, y = curve[axis or axis_of(curve)].values, curve[quantity].values
     return [
         Line(x[part], y[part], holds, bool(detached[branch[part.start]]), bool(asymmetric[branch[part.start]]))
         for part, holds in stretches(stable, piece, branch)
@@ -119,7 +137,8 @@ def special_marks(curve: xr.Dataset, quantity: str) -> list[Mark]:
     kinds = curve.attrs["special_kind_names"].split(", ")
     count: dict[str, int] = {}
     marks = []
-    columns = (curve["special_kind"].values, curve["special_detuning"].values, curve[f"special_{quantity}"].values)
+    places = curve[f"special_{axis_of(curve)}"].values
+    columns = (curve["special_kind"].values, places, curve[f"special_{quantity}"].values)
     for code, x, y in zip(*columns, strict=True):
         kind = kinds[int(code)]
         count[kind] = count.get(kind, 0) + 1
@@ -137,19 +156,20 @@ class Beyond:
 
 def beyond_the_top(bare: xr.Dataset, top: float) -> Beyond | None:
     """What to say of the response without absorbers if it rises beyond `top` [m]; None if it stays below."""
-    x, y = bare["detuning"].values, bare["pipe_peak"].values
+    x, y = bare[axis_of(bare)].values, bare["pipe_peak"].values
     outside = np.flatnonzero(~(y <= top))
     if not top or outside.size == 0:
         return None
     finite = bool(np.all(np.isfinite(y)))
-    reach = f"up to {np.max(y):.3g} m" if finite else "without bound"
+    reach = f"up to {readable.length(float(np.max(y)))}" if finite else "without bound"
     return Beyond(float(x[outside[-1]]), f"without absorber\n{reach} ↑")
 
 
 def interesting_range(curve: xr.Dataset, modulated: xr.Dataset | None) -> tuple[float, float] | None:
-    """Detunings around everything special [rad/s]: a narrow screen shows these first; None to show all."""
-    x = curve["detuning"].values
-    places = [curve["special_detuning"].values] if "special_detuning" in curve else []
+    """Detunings [rad/s] or winds [m/s] around everything special, for a narrow screen; None to show all."""
+    axis = axis_of(curve)
+    x = curve[axis].values
+    places = [curve[f"special_{axis}"].values] if f"special_{axis}" in curve else []
     places += [modulated["detuning"].values] if modulated is not None else []
     known = np.concatenate([*places, [float(x[np.nanargmax(curve["pipe_peak"].values)])]])
     lo, hi = float(np.min(known)), float(np.max(known))

@@ -8,18 +8,21 @@ import numpy as np
 from matplotlib.patheffects import withStroke
 
 from frahm.plotting.lines import (
-    DETUNING_LABEL,
+    AXIS_LABELS,
     HEADROOM,
     KIND_NAMES,
+    MM,
     MODULATED_NAMES,
     MOST_LABELS,
     QUANTITY_LABELS,
+    axis_of,
     beyond_the_top,
     envelopes,
     largest_finite,
     line_colour,
     line_width,
     lines_by_name,
+    resonance_of,
     response_lines,
     special_marks,
     thinned,
@@ -45,7 +48,9 @@ def response_figure(
     slow: xr.Dataset | None = None,
     modulated: xr.Dataset | None = None,
 ) -> Figure:
-    """Response over the detuning: stable solid, unstable dashed, special points, motions that were integrated.
+    """Response over the wind, or over the detuning where the lift is fixed.
+
+    Stable responses are solid, unstable ones dashed, with special points and motions that were integrated.
 
     Parameters
     ----------
@@ -71,19 +76,20 @@ def response_figure(
     if slow is not None:
         for i, line in enumerate(lines_by_name(response_lines(slow, quantity)).values()):
             dashes = "-" if line.stable else UNSTABLE_DASHES
-            axes.plot(line.x, line.y, linestyle=dashes, label="_" if i else "slow flow", **_SLOW_LOOK)
+            axes.plot(line.x, MM * line.y, linestyle=dashes, label="_" if i else "slow flow", **_SLOW_LOOK)
     _draw_special_points(axes, curve, quantity)
     for motion in motions or []:
-        top = max(top, _draw_motion(axes, motion, quantity))
+        top = max(top, _draw_motion(axes, motion, quantity, axis_of(curve)))
     if bare is not None and quantity == "pipe_peak":
-        axes.plot(bare["detuning"].values, bare["pipe_peak"].values, ":", color=BARE, label="without absorber")
+        x, y = bare[axis_of(bare)].values, MM * bare["pipe_peak"].values
+        axes.plot(x, y, ":", color=BARE, label="without absorber")
         beyond = beyond_the_top(bare, HEADROOM * top)
         if beyond is not None:
             axes.annotate(
-                beyond.text, (beyond.x, HEADROOM * top), (6, -3), textcoords="offset points", va="top", fontsize=8,
+                beyond.text, (beyond.x, MM * HEADROOM * top), (6, -3), textcoords="offset points", va="top", fontsize=8,
                 color=BARE, path_effects=[withStroke(linewidth=1.5, foreground="white")],
             )  # fmt: skip
-    axes.set(xlabel=DETUNING_LABEL, ylabel=QUANTITY_LABELS[quantity], ylim=(0, HEADROOM * top or 1.0))
+    axes.set(xlabel=AXIS_LABELS[axis_of(curve)], ylabel=QUANTITY_LABELS[quantity], ylim=(0, MM * HEADROOM * top or 1.0))
     figure.legend(loc="outside lower center", ncols=3)
     return figure
 
@@ -97,19 +103,22 @@ def motion_figure(motion: MotionView) -> Figure:
     for name in reversed(motion.signals):
         color, style, width = _SIGNAL_LOOKS[name]
         time, low, high = motion.envelope[name]
+        low, high = MM * low, MM * high
         whole.fill_between(time, low, high, facecolor=color, alpha=0.25, linewidth=0, label=LABELS[name])
         for edge in (low, high):
             whole.plot(time, edge, color=color, linewidth=0.5)
-        last.plot(*motion.last[name], color=color, linestyle=style, linewidth=width)
-        lines.plot(*thinned(*motion.spectrum[name], 700), color=color, linestyle=style, linewidth=0.7)
+        moment, displacement = motion.last[name]
+        last.plot(moment, MM * displacement, color=color, linestyle=style, linewidth=width)
+        frequency, amplitude = thinned(*motion.spectrum[name], 700)
+        lines.plot(frequency, MM * amplitude, color=color, linestyle=style, linewidth=0.7)
     if motion.moves:
         lines.set_yscale("log")
         decade_axis(lines.yaxis)
     lines.axvline(motion.frequency_hz, color=INK, linestyle=":", linewidth=0.8, label="excitation")
     whole.set_title(motion.title, y=1.02)  # a place given need not be looked for
-    whole.set(xlabel="time [s], whole run", ylabel="envelope [m]")
-    last.set(xlabel="time [s], last periods", ylabel="displacement [m]")
-    lines.set(xlabel="frequency [Hz]", ylabel="amplitude [m]", ylim=motion.spectrum_range)
+    whole.set(xlabel="time [s], whole run", ylabel="envelope [mm]")
+    last.set(xlabel="time [s], last periods", ylabel="displacement [mm]")
+    lines.set(xlabel="frequency [Hz]", ylabel="amplitude [mm]", ylim=[MM * edge for edge in motion.spectrum_range])
     lines.set_xlim(0, SHOWN_HARMONICS * motion.frequency_hz)
     for axes in (whole, last):
         axes.margins(x=0.01)
@@ -126,7 +135,7 @@ def manifold_figure(manifold: xr.Dataset, motion: MotionView | None = None, fold
     figure = new_figure(160, 100)
     axes = figure.subplots()
     if motion is not None and motion.slow is not None:
-        axes.plot(*motion.slow, color=GREEN, linewidth=0.7, label=f"motion at σ = {motion.detuning:.3g} rad/s")
+        axes.plot(*motion.slow, color=GREEN, linewidth=0.7, label=f"motion at {motion.where}")
     Z, X = manifold["relative_amplitude"].values, manifold["pipe_amplitude"].values
     attracting = manifold["attracting"].values > 0
     axes.plot(Z, np.where(attracting, X, np.nan), color=INK, label="slow manifold, attracting")
@@ -148,7 +157,9 @@ def manifold_figure(manifold: xr.Dataset, motion: MotionView | None = None, fold
 def _draw_branches(axes: Axes, curve: xr.Dataset, quantity: str) -> None:
     for name, line in lines_by_name(response_lines(curve, quantity)).items():
         dashes = "-" if line.stable else UNSTABLE_DASHES
-        axes.plot(line.x, line.y, linestyle=dashes, color=line_colour(line), linewidth=line_width(line), label=name)
+        axes.plot(
+            line.x, MM * line.y, linestyle=dashes, color=line_colour(line), linewidth=line_width(line), label=name
+        )
 
 
 def _draw_modulated(axes: Axes, modulated: xr.Dataset, quantity: str) -> float:
@@ -159,13 +170,13 @@ def _draw_modulated(axes: Axes, modulated: xr.Dataset, quantity: str) -> float:
         named.add(stretch.stable)
         if stretch.stable:
             axes.fill_between(
-                stretch.x, stretch.low, stretch.high, facecolor=GREEN, edgecolor=GREEN, alpha=0.2, linewidth=0.8,
-                label=label,
+                stretch.x, MM * stretch.low, MM * stretch.high, facecolor=GREEN, edgecolor=GREEN, alpha=0.2,
+                linewidth=0.8,                label=label,
             )  # fmt: skip
             top = max(top, float(np.max(stretch.high)))
         else:
             for y in (stretch.low, stretch.high):
-                axes.plot(stretch.x, y, linestyle=UNSTABLE_DASHES, color=GREEN, linewidth=0.7, label=label)
+                axes.plot(stretch.x, MM * y, linestyle=UNSTABLE_DASHES, color=GREEN, linewidth=0.7, label=label)
                 label = "_"
     return top
 
@@ -173,32 +184,34 @@ def _draw_modulated(axes: Axes, modulated: xr.Dataset, quantity: str) -> float:
 def _draw_special_points(axes: Axes, curve: xr.Dataset, quantity: str) -> None:
     """Special points with their labels, unless there are so many that labels would hide what they name."""
     marks, named = special_marks(curve, quantity), set()
+    middle = resonance_of(curve)
     for mark in marks:
         label = "_" if mark.kind in named else KIND_NAMES[mark.kind]
         named.add(mark.kind)
-        axes.plot(mark.x, mark.y, MARKERS[mark.kind], color=INK, markersize=5, linestyle="none", label=label)
+        axes.plot(mark.x, MM * mark.y, MARKERS[mark.kind], color=INK, markersize=5, linestyle="none", label=label)
         if len(marks) > MOST_LABELS:
             continue
-        right = mark.x > 0  # labels stand outside, the motions at resonance inside
+        right = mark.x > middle  # labels stand outside, the motions at resonance inside
         offset = (7 if right else -6, -3 if mark.kind == "saddle-node" else 6)
         axes.annotate(
-            mark.label, (mark.x, mark.y), offset, textcoords="offset points", va="center", fontsize=8,
+            mark.label, (mark.x, MM * mark.y), offset, textcoords="offset points", va="center", fontsize=8,
             ha="left" if right else "right", path_effects=[withStroke(linewidth=1.5, foreground="white")],
         )  # fmt: skip
 
 
-def _draw_motion(axes: Axes, motion: MotionView, quantity: str) -> float:
+def _draw_motion(axes: Axes, motion: MotionView, quantity: str, axis: str) -> float:
     """Mark a motion; return the height of the mark."""
     low, high = motion.peaks(quantity)
+    x = motion.place(axis)
     if not np.isfinite(high):
         return 0.0
     known = axes.get_legend_handles_labels()[1]
     label = f"integrated from rest, {motion.kind}"
     shown = "_" if label in known else label
     if motion.kind == "periodic":
-        axes.plot(motion.detuning, high, "o", markersize=5, markerfacecolor="none", color=GREEN, label=shown)
+        axes.plot(x, MM * high, "o", markersize=5, markerfacecolor="none", color=GREEN, label=shown)
     else:
-        axes.plot([motion.detuning] * 2, [low, high], "-", color=GREEN, linewidth=1.0)
+        axes.plot([x] * 2, [MM * low, MM * high], "-", color=GREEN, linewidth=1.0)
         marker = "D" if motion.kind == "modulated" else "x"
-        axes.plot(motion.detuning, high, marker, markersize=4, color=GREEN, linestyle="none", label=shown)
+        axes.plot(x, MM * high, marker, markersize=4, color=GREEN, linestyle="none", label=shown)
     return high

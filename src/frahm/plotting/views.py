@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.arrays import Floats
 
 if TYPE_CHECKING:
@@ -68,7 +69,18 @@ class MotionView:
     @property
     def title(self) -> str:
         """One line that says which motion this is."""
-        return f"σ = {self.detuning:.4g} rad/s, from rest: {self.kind}"
+        return f"{self.where}, from rest: {self.kind}"
+
+    @property
+    def where(self) -> str:
+        """Wind speed, or the detuning where the lift is fixed."""
+        speed = self.place("wind_speed")
+        return readable.speed(speed) if np.isfinite(speed) else f"σ = {self.detuning:.4g} rad/s"
+
+    def place(self, axis: str) -> float:
+        """Place on the axis "detuning" [rad/s] or "wind_speed" [m/s], NaN where that is not known."""
+        value = self.facts.get(axis)
+        return float("nan") if value is None else float(value)
 
     @property
     def frequency_hz(self) -> float:

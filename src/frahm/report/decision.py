@@ -61,7 +61,7 @@ def _place(row: Mapping[str, Any]) -> str:
     speed = row["wind_speed"]
     if speed is not None and math.isfinite(speed):
         return readable.speed(speed)
-    return "-" if row["detuning"] is None else f"σ = {row['detuning']:.3g} rad/s"
+    return "-" if row["detuning"] is None else f"σ = {round(row['detuning'], 4):.3g} rad/s"
 
 
 def _life(row: Mapping[str, Any]) -> str:
@@ -76,7 +76,8 @@ def _used(row: Mapping[str, Any]) -> str:
     if not used:
         return "no limit given"
     name = max(used, key=lambda one: used[one])
-    words = f"{name.replace('_', ' ')} {readable.share(used[name])}"
+    share = "below 1%" if used[name] < 0.01 else readable.share(used[name])
+    words = f"{name.replace('_', ' ')} {share}"
     return f"{words}: FAIL" if used[name] > 1 else words
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import jinja2
 
+from frahm import readable
 from frahm.analysis import defaulted_fields, provenance
 from frahm.analysis.decision import together
 from frahm.case import Case, Design, field_table, field_values
@@ -50,6 +51,7 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         loader=jinja2.PackageLoader("frahm.report", "."), autoescape=True, trim_blocks=True, lstrip_blocks=True,
         keep_trailing_newline=True, undefined=jinja2.StrictUndefined,
     )  # fmt: skip
+    environment.filters["length_text"] = readable.length
     objective = study.objective
     return environment.get_template("design.html.jinja").render(
         study=study,
@@ -61,7 +63,7 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         error_rows=error_rows(study),
         trade_off=[
             (f"{p.force_margin:g}", number(p.design.linear), number(p.design.kappa, 5), number(p.design.xi2),
-             number(p.value), "yes" if p.verified else "no")
+             _value(p.value, objective), "yes" if p.verified else "no")
             for p in study.trade_off
         ],
         hardware=hardware_rows(study),
@@ -120,10 +122,10 @@ def missed_below(study: DesignStudy) -> str:
 
 
 def least_stroke(study: DesignStudy) -> str:
-    """Motion of the mass below which no absorber balances the force, at the pipe's frequency [m]."""
+    """Motion of the mass below which no absorber balances the force, at the pipe's frequency."""
     ratio = study.best.design.rho2 if study.best.design else math.nan
     case = study.case
-    return number(vortex_shedding(case).lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
+    return readable.length(vortex_shedding(case).lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
 
 
 def asked_rows(study: DesignStudy) -> list[tuple[str, ...]]:
@@ -146,8 +148,8 @@ def comparison_head(objective: Objective) -> list[str]:
     """Head of the comparison."""
     more = [] if _is_peak(objective) else [_titled(objective)]
     return [
-        "Device", "ρ₂", "linear [1/s²]", "κ [1/(m² s²)]", "ξ₂ [1/s]", *more, "Worst pipe peak [m]", "Motion",
-        "Stroke [m]", "Force margin", "Rests on", "Verified",
+        "Device", "ρ₂", "linear [1/s²]", "κ [1/(m² s²)]", "ξ₂ [1/s]", *more, "Worst pipe peak [mm]", "Motion",
+        "Stroke [mm]", "Force margin", "Rests on", "Verified",
     ]  # fmt: skip
 
 
@@ -160,9 +162,9 @@ def comparison_row(rival: Rival, objective: Objective) -> tuple[str, ...]:
         parameters = tuple(number(getattr(design, name), 4) for name in ("rho2", "linear", "kappa", "xi2"))
         name += f", fifth power {number(design.quintic)} 1/(m⁴ s²)" if design.quintic else ""
         name += f", at {number(design.position)} m" if design.position is not None else ""
-    more = () if _is_peak(objective) else (number(rival.value),)
+    more = () if _is_peak(objective) else (_value(rival.value, objective),)
     return (
-        name, *parameters, *more, number(rival.worst_pipe_peak), rival.kind, number(rival.relative_peak),
+        name, *parameters, *more, readable.in_mm(rival.worst_pipe_peak), readable.motion(rival.kind), _stroke(rival),
         _margin(rival.force_margin), _basis(rival), "yes" if rival.verified else "no",
     )  # fmt: skip
 
@@ -174,13 +176,17 @@ def ropes_row(objective: Objective) -> tuple[str, ...]:
     return ("helical ropes", *("-",) * 4, *more, "not computed", "-", "0", "-", rests, "-")
 
 
+def _value(value: float, objective: Objective) -> str:
+    return readable.in_mm(value) if objective.unit == "m" else number(value)
+
+
 def _is_peak(objective: Objective) -> bool:
     return objective.name == "peak" and objective.quantile is None
 
 
 def _titled(objective: Objective) -> str:
     title = objective.title[0].upper() + objective.title[1:]
-    return f"{title} [{'m' if objective.unit == 'm' else '-'}]"
+    return f"{title} [{'mm' if objective.unit == 'm' else '-'}]"
 
 
 def error_rows(study: DesignStudy) -> list[tuple[str, ...]]:
@@ -188,7 +194,7 @@ def error_rows(study: DesignStudy) -> list[tuple[str, ...]]:
     return [
         (
             DEVICES[name],
-            *(number(p) + ("" if s else " ?") for p, s in zip(peaks, study.error_verified[name], strict=True)),
+            *(readable.in_mm(p) + ("" if s else " ?") for p, s in zip(peaks, study.error_verified[name], strict=True)),
         )
         for name, peaks in study.error_table.items()
     ]
@@ -207,6 +213,10 @@ def sensitivity_rows(study: DesignStudy) -> list[tuple[str, ...]]:
 
 def _slope(value: float) -> str:
     return "-" if math.isnan(value) else f"{value:+.3g}"
+
+
+def _stroke(rival: Rival) -> str:
+    return "-" if rival.name == "none" else readable.in_mm(rival.relative_peak)
 
 
 def _margin(value: float) -> str:

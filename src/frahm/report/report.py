@@ -18,7 +18,7 @@ from frahm.analysis import Analysis, margin_sentence
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.plotting.fatigue import fatigue_plot
-from frahm.plotting.gallery import save_figures
+from frahm.plotting.gallery import save_figures, stands_over_wind
 from frahm.plotting.interactive import CONFIG, basin_map_plot, manifold_plot, motion_plot, response_plot
 from frahm.plotting.over_wind import over_wind_plot
 from frahm.plotting.plain import PlainFigure
@@ -71,6 +71,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         undefined=jinja2.StrictUndefined,
     )
     environment.filters["number"] = tables.number
+    environment.filters["length_text"] = readable.length
     environment.filters["with_indices"] = tables.with_indices
     views = motion_views(analysis.results, analysis.data)
     plots = _plots(analysis, views)
@@ -126,7 +127,7 @@ def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
             figures[name] = response_plot(data["response"], quantity, views, *beside)
     for view in views[:_MOST_MOTIONS]:
         figures[f"motion-{view.key}"] = motion_plot(view)
-    if "response_over_wind" in data:
+    if "response_over_wind" in data and not stands_over_wind(data):
         both = data["response_over_wind"], data["without_absorber_over_wind"]
         figures["response-over-wind"] = over_wind_plot(*both)
     if "unsteady_wind" in data:

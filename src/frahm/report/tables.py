@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup, escape
 from pydantic import BaseModel
 
+from frahm import readable
 from frahm.analysis import Analysis
 from frahm.case import Case, field_values
 from frahm.loads import vortex_shedding
@@ -120,7 +121,7 @@ def criterion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
 def estimate_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     """Name, ratio, amplitude, what went in and standing of every amplitude estimate."""
     return [
-        (row["name"], number(row["ratio"], 3), number(row["amplitude"], 3), row["detail"], row["standing"])
+        (row["name"], number(row["ratio"], 3), readable.in_mm(row["amplitude"]), row["detail"], row["standing"])
         for row in analysis.results["wind"]["estimates"]
     ]
 
@@ -128,9 +129,9 @@ def estimate_rows(analysis: Analysis) -> list[tuple[str, ...]]:
 def estimate_sentence(analysis: Analysis) -> str:
     """The interval of the estimates beside the computed amplitude."""
     found = analysis.results["wind"]
-    low, high, computed = (number(value, 3) for value in (*found["interval"], found["computed"]))
-    used = f"this analysis uses the harmonic lift of the case, which gives {computed} m"
-    return f"The estimates span {low} … {high} m; {used}."
+    low, high, computed = (readable.in_mm(value) for value in (*found["interval"], found["computed"]))
+    used = f"this analysis uses the harmonic lift of the case, which gives {computed} mm"
+    return f"The estimates span {low} … {high} mm; {used}."
 
 
 def load_cycle_row(analysis: Analysis) -> tuple[str, ...]:
@@ -144,13 +145,13 @@ def unsteady_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     found = analysis.results["unsteady_wind"]
     gusts = found["reduction_by_gusts"]
     rows: list[tuple[str, ...]] = [
-        ("Largest pipe displacement [m]", number(found["pipe_peak"]), number(found["bare_pipe_peak"])),
-        ("Pipe rms [m]", number(found["pipe_rms"]), number(found["bare_pipe_rms"])),
-        ("Pipe rms in steady wind of the same mean [m]", number(found["steady_pipe_rms"]),
-         number(found["bare_steady_pipe_rms"])),
+        ("Largest pipe displacement [mm]", readable.in_mm(found["pipe_peak"]), readable.in_mm(found["bare_pipe_peak"])),
+        ("Pipe rms [mm]", readable.in_mm(found["pipe_rms"]), readable.in_mm(found["bare_pipe_rms"])),
+        ("Pipe rms in steady wind of the same mean [mm]", readable.in_mm(found["steady_pipe_rms"]),
+         readable.in_mm(found["bare_steady_pipe_rms"])),
         ("Reduction by the gusts", _percent(gusts["with_absorbers"]), _percent(gusts["without_absorbers"])),
         ("Reduction by the absorbers", _percent(found["reduction_by_absorbers"]), "-"),
-        ("Amplitude in steady resonant wind [m]", "-", number(found["resonant_amplitude"])),
+        ("Amplitude in steady resonant wind [mm]", "-", readable.in_mm(found["resonant_amplitude"])),
         ("Build-up in steady resonant wind, time constant [s]", "-", number(found["build_up_time"])),
     ]  # fmt: skip
     if analysis.results["has_absorber"]:
@@ -175,7 +176,7 @@ def special_point_rows(analysis: Analysis, method: str = "harmonic-balance") -> 
         (
             mark.label, KIND_NAMES[point["kind"]], number(point["detuning"]),
             number(point["frequency"] / (2 * math.pi), 5),
-            number(point["pipe_peak"]), number(point["relative_peak"]),
+            readable.in_mm(point["pipe_peak"]), readable.in_mm(point["relative_peak"]),
             f"{point['branch']}{' (detached)' if point['branch'] in detached else ''}", point["status"],
         )
         for mark, point in zip(
@@ -198,7 +199,7 @@ def branch_rows(analysis: Analysis) -> list[tuple[str, ...]]:
             str(branch["number"]),
             " ".join(name for name in ("detached", "asymmetric") if branch[name]) or "main",
             " … ".join(number(edge) for edge in branch["detuning"]),
-            number(branch["pipe_peak_max"]),
+            readable.in_mm(branch["pipe_peak_max"]),
             "yes" if branch["stable_anywhere"] else "no",
         )
         for branch in found.get("branches", [])
@@ -213,9 +214,9 @@ def motion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
         ratio = peak / bare if peak is not None and bare else None
         rows.append(
             (
-                number(motion["detuning"]), motion["reason"], motion["kind"], number(peak),
-                number(motion["pipe_envelope"][0]), number(motion["pipe_rms"]), number(motion["relative_peak"]),
-                number(bare), f"{ratio:.3g}" if ratio is not None else "-",
+                _where(motion), motion["reason"], readable.motion(motion["kind"]), readable.in_mm(peak),
+                *map(readable.in_mm, (motion["pipe_envelope"][0], motion["pipe_rms"], motion["relative_peak"])),
+                readable.in_mm(bare), f"{ratio:.3g}" if ratio is not None else "-",
             )
         )  # fmt: skip
     return rows
@@ -225,7 +226,8 @@ def attractor_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     """Kind, peaks, envelope, basin fraction with its interval, and whether the motion from rest ends there."""
     return [
         (
-            _kind(found), number(found["pipe_peak"]), number(found["pipe_envelope"][0]), number(found["relative_peak"]),
+            _kind(found),
+            *map(readable.in_mm, (found["pipe_peak"], found["pipe_envelope"][0], found["relative_peak"])),
             *_basin(found),
         )
         for found in analysis.results.get("attractors", [])
@@ -236,7 +238,8 @@ def coexisting_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     """Detuning, kind, peaks and basin of every attractor at frequencies of the window that have several."""
     return [
         (
-            number(found["detuning"]), _kind(found), number(found["pipe_peak"]), number(found["relative_peak"]),
+            number(found["detuning"]), _kind(found),
+            *map(readable.in_mm, (found["pipe_peak"], found["relative_peak"])),
             *_basin(found),
         )
         for found in analysis.results.get("coexisting", [])
@@ -245,7 +248,8 @@ def coexisting_rows(analysis: Analysis) -> list[tuple[str, ...]]:
 
 def _kind(found: dict[str, Any]) -> str:
     multiple = found["period_multiple"]
-    return f"{found['kind']}, {multiple} periods" if multiple > 1 else str(found["kind"])
+    kind = readable.motion(str(found["kind"]))
+    return f"{kind}, {multiple} periods" if multiple > 1 else kind
 
 
 def _basin(found: dict[str, Any]) -> tuple[str, str, str]:
@@ -276,13 +280,43 @@ def modulated_sentence(analysis: Analysis) -> str:
     beside = f"; in {both} beside a stable periodic response, so that the start decides" if both else ""
     return (
         f"By the slow flow a stable modulated response exists at detunings {_ranges_text(found['ranges'])} rad/s"
-        f"{beside}. Its amplitude reaches {number(found['pipe_max'])} m at the pipe and"
-        f" {number(found['relative_max'])} m at the absorber."
+        f"{beside}. Its amplitude reaches {readable.length(found['pipe_max'])} at the pipe and"
+        f" {readable.length(found['relative_max'])} at the absorber."
     )
 
 
 def _ranges_text(ranges: list[list[float]]) -> str:
     return " and ".join(f"{number(lo)} … {number(hi)}" for lo, hi in ranges)
+
+
+def place_head(analysis: Analysis) -> str:
+    """Head of the column that says where a motion is."""
+    return "Wind [m/s]" if analysis.results.get("decision", {}).get("over") == "wind" else "σ [rad/s]"
+
+
+def _where(found: dict[str, Any]) -> str:
+    """Wind speed, or the detuning where the lift is fixed."""
+    speed = found.get("wind_speed")
+    return number(found["detuning"]) if speed is None or math.isnan(speed) else number(speed)
+
+
+def _at(found: dict[str, Any]) -> str:
+    speed = found.get("wind_speed")
+    if speed is None or math.isnan(speed):
+        return f"at {number(found['detuning'])} rad/s"
+    return f"at {readable.speed(speed)}"
+
+
+def other_mode_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Mode, natural frequency, peak, wind, stress range and standing of every other mode that the wind excites."""
+    return [
+        (
+            str(row["mode"]), readable.frequency(row["natural_frequency"]), readable.in_mm(row["pipe_peak"]),
+            readable.speed(row["wind_speed"]), readable.motion(row["kind"]), readable.in_mpa(row["stress_range"]),
+            "yes" if row["verified"] else "no: " + " ".join(row["unverified"]),
+        )
+        for row in analysis.results.get("other_modes", [])
+    ]  # fmt: skip
 
 
 def worst_sentence(analysis: Analysis) -> str:
@@ -291,10 +325,10 @@ def worst_sentence(analysis: Analysis) -> str:
     if worst is None:
         return ""
     return (
-        f"Over the window of the detuning the largest pipe peak of an attractor that at least"
-        f" {100 * worst['min_basin']:.3g} % of the sampled states reach is {number(worst['pipe_peak'])} m"
-        f" ({worst['kind']}, at {number(worst['detuning'])} rad/s), and the largest stroke"
-        f" {number(worst['relative_peak'])} m, from {worst['frequencies_searched']} frequencies searched;"
+        f"Over the range of operation the largest pipe peak of an attractor that at least"
+        f" {100 * worst['min_basin']:.3g} % of the sampled states reach is {readable.length(worst['pipe_peak'])}"
+        f" ({readable.motion(worst['kind'])}, {_at(worst)}), and the largest stroke"
+        f" {readable.length(worst['relative_peak'])}, from {worst['frequencies_searched']} frequencies searched;"
         f" {'verified' if worst['verified'] else 'unverified'}."
     )
 

@@ -45,10 +45,10 @@ def test_the_modulated_range_is_in_both_response_figures():
     modulated = frahm.modulated_branches(CASE, detuning=(-0.001, 0.004), looks=3, checks=0).to_dataset()
     (axes,) = response_figure(curve, "relative_peak", modulated=modulated).axes
     assert "modulated (slow flow)" in [handle.get_label() for handle in axes.collections]
-    assert axes.get_ylim()[1] > float(modulated["relative_max"].max())
+    assert axes.get_ylim()[1] > 1e3 * float(modulated["relative_max"].max())  # [mm]
     plot = response_plot(curve, "relative_peak", [], modulated=modulated)
     shaded = [trace for trace in plot.data if trace.get("fill") == "tonexty"]
-    np.testing.assert_allclose(max(np.max(t["y"]) for t in shaded), modulated["relative_max"].max(), rtol=1e-6)
+    np.testing.assert_allclose(max(np.max(t["y"]) for t in shaded), 1e3 * modulated["relative_max"].max(), rtol=1e-6)
 
 
 def test_the_map_names_every_attractor_and_what_was_lost():
@@ -60,6 +60,6 @@ def test_the_map_names_every_attractor_and_what_was_lost():
     texts = [text.get_text() for text in basin_map_figure(data).legends[0].get_texts()]
     assert texts[:3] == [entry.text for entry in entries]
     assert "escaped" in texts
-    assert any(text.startswith("periodic, pipe 0.030") for text in texts)
+    assert any(text.startswith("periodic, pipe 30.") for text in texts)
     heat = basin_map_plot(data).data[0]
     assert np.array_equal(heat["z"], index.T)
