@@ -73,7 +73,7 @@ def test_a_curve_that_leaves_the_figure_is_named_with_its_height():
     assert beyond_the_top(bare([0.1, 0.2, 0.1, 0.1]), 0.3) is None
     beyond = beyond_the_top(bare([0.1, 0.9, 0.4, 0.1]), 0.3)
     assert beyond.x == 0.1
-    assert "0.9 m" in beyond.text
+    assert "up to 900 mm" in beyond.text
     assert "without bound" in beyond_the_top(bare([0.1, np.inf, 0.2, 0.1]), 0.3).text
 
 
