@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from frahm.plotting.decision import DEVICES, Marks
 from frahm.plotting.design_figures import save_design_figures
 from frahm.report import decision
 from frahm.report.document import document_rows
+from frahm.report.references import reference_rows
 from frahm.report.report import REPORT_FILE, image_address
 from frahm.report.tables import input_rows, number
 from frahm.response import frequency_response
@@ -92,6 +94,11 @@ def _head(study: DesignStudy) -> dict[str, Any]:
         "unverified": study.unverified,
         "interrupted": study.interrupted,
         "titles": document_rows(study.case),
+        "references": reference_rows(
+            study.case,
+            {"lock_in_band": dataclasses.asdict(lock_in_band(study.case))},
+            [rival.name for rival in study.comparison],
+        ),
     }
 
 

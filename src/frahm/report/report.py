@@ -26,6 +26,7 @@ from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
 from frahm.plotting.wind import gusts_plot
 from frahm.report import decision, fatigue_tables, tables
 from frahm.report.document import document_rows
+from frahm.report.references import reference_rows
 
 REPORT_FILE = "report.html"
 _MOST_MOTIONS = 8
@@ -108,6 +109,9 @@ def _head(analysis: Analysis) -> dict[str, Any]:
         "unverified": analysis.unverified,
         "interrupted": analysis.interrupted,
         "titles": document_rows(analysis.case),
+        "references": reference_rows(
+            analysis.case, results.get("wind"), [row["name"] for row in compared["rows"]] if compared else ()
+        ),
     }
 
 

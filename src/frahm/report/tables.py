@@ -13,6 +13,7 @@ from pydantic import BaseModel
 from frahm import readable
 from frahm.analysis import Analysis
 from frahm.case import Case, field_values
+from frahm.case.fields import FieldValue
 from frahm.loads import vortex_shedding
 
 _LISTED = 12  # pairs of a table that are still written out
@@ -32,7 +33,7 @@ _SETTINGS = {
 
 
 class InputRow(NamedTuple):
-    """One field of the case; the symbol is its letter and its index."""
+    """One field of the case; the symbol is its letter and its index, `typed` what was written, with its own unit."""
 
     path: str
     title: str
@@ -40,6 +41,7 @@ class InputRow(NamedTuple):
     value: str
     unit: str
     defaulted: bool
+    typed: str = ""
 
 
 def number(value: Any, digits: int = 4) -> str:
@@ -59,12 +61,22 @@ def with_indices(rows: list[tuple[str, ...]]) -> list[list[Markup]]:
 
 
 def input_rows(case: Case, defaulted: list[str]) -> list[InputRow]:
-    """Every field of the case in SI units, those left out in the file marked."""
+    """Every field of the case in SI units, as typed where that is another unit, those left out in the file marked."""
     return [
-        InputRow(path, facts.title, _symbol(facts.symbol), _value(value), _unit(facts.unit), path in defaulted)
-        for path, facts, value, *_ in field_values(case)
-        if path not in ("name", "title", "absorbers")
-    ]
+        InputRow(
+            field.path, field.facts.title, _symbol(field.facts.symbol), _value(field.value), _unit(field.facts.unit),
+            field.path in defaulted, _typed(field),
+        )
+        for field in field_values(case)
+        if field.path not in ("name", "title", "absorbers") and not field.path.startswith("document")
+    ]  # fmt: skip
+
+
+def _typed(field: FieldValue) -> str:
+    """What was typed, if it is not the very value in the very unit."""
+    if field.typed is None or field.typed.replace(" ", "") == f"{_value(field.value)}{field.facts.unit}":
+        return ""
+    return field.typed
 
 
 def mode_count(case: Case) -> int:

@@ -11,6 +11,8 @@ from frahm.analysis import analyse, save_analysis
 from frahm.plotting.decision import DEVICES
 from frahm.report import decision, render_report
 from frahm.report.document import document_rows
+from frahm.report.references import reference_rows
+from frahm.report.tables import input_rows
 
 
 @pytest.fixture(scope="module")
@@ -98,6 +100,28 @@ def test_checks_never_say_passed_where_one_failed():
     assert decision.numerical_checks([("a", "fail"), ("b", "pass")], ["c"])[0] == "fail"
     assert decision.numerical_checks([("a", "pass")], ["c"])[0] == "unverified"
     assert decision.numerical_checks([("a", "pass")], [])[0] == "sound"
+
+
+def test_the_title_block_frames_the_report_and_inputs_come_back_as_typed():
+    case = frahm.load_case("jacket-pipe").to_dict()
+    case["pipe"]["diameter"] = "30 inch"
+    case = frahm.load_case(case | {"document": {"project": "Kittiwake", "revision": "B", "checked": "A. N. Other"}})
+    assert document_rows(case) == [("Project", "Kittiwake"), ("Revision", "B"), ("Checked by", "A. N. Other")]
+    (diameter,) = [row for row in input_rows(case, []) if row.path == "pipe.diameter"]
+    assert (diameter.typed, diameter.value, diameter.unit) == ("30 inch", "0.762", "m")
+    assert not [row for row in input_rows(case, []) if row.path.startswith("document")]
+
+
+def test_every_formula_and_limit_is_a_reference_with_a_standing(failing):
+    analysis, results, html = failing
+    rows = reference_rows(analysis.case, results["wind"], ["none", "tuned mass damper"])
+    assert all(source and standing for _, source, standing in rows)
+    used = [name for name, _, _ in rows]
+    for criterion in results["wind"]["criteria"]:
+        assert f"Onset: {criterion['name']}" in used
+    assert "Lock-in band" in used
+    assert "Limit: displacement" in used
+    assert 'id="references"' in html
 
 
 def test_a_case_without_title_block_has_no_frame():
