@@ -3,6 +3,7 @@
 import json
 import re
 
+import jinja2
 import pytest
 
 import frahm
@@ -122,6 +123,13 @@ def test_every_formula_and_limit_is_a_reference_with_a_standing(failing):
     assert "Lock-in band" in used
     assert "Limit: displacement" in used
     assert 'id="references"' in html
+
+
+@pytest.mark.parametrize("name", ["report.html.jinja", "design.html.jinja"])
+def test_the_templates_can_be_read(name):
+    environment = jinja2.Environment(loader=jinja2.PackageLoader("frahm.report", "."))
+    for part in [name, *(p for p in environment.list_templates() if p.startswith("sections/"))]:
+        assert environment.get_template(part)
 
 
 def test_a_case_without_title_block_has_no_frame():
