@@ -14,12 +14,12 @@ from flask import Response, request
 from frahm.case import Case, case_from_text, load_case
 from frahm.errors import ParameterError
 from frahm.web import words
-from frahm.web.controls import DETUNING, Reading, field_facts, field_texts, reading, shown
+from frahm.web.controls import Reading, field_facts, field_texts, reading, shown
 from frahm.web.front import HEAD
 from frahm.web.layout import STYLE, heading, page
 from frahm.web.looks import figures
 from frahm.web.presets import PRESETS
-from frahm.web.scope import PLANES, check_shown, detuning_window, has_slow_flow, shedding_detuning, start_detuning
+from frahm.web.scope import PLANES, Axis, has_slow_flow
 from frahm.web.sessions import Job, Session, Sessions
 
 _INDEX = """{%metas%}<title>{%title%}</title>{%favicon%}{%css%}STYLE
@@ -31,14 +31,7 @@ _VALUES = (State("values", "data"), State("case", "data"), State("session", "dat
 
 
 def build_app(case: Case, sessions: Sessions) -> Dash:
-    """The application that opens with `case`.
-
-    Raises
-    ------
-    ParameterError
-        If the page cannot show the case.
-    """
-    check_shown(case)
+    """The application that opens with `case`."""
     still = json.dumps(figures(), ensure_ascii=False).replace("</", "<\\/")
     app = Dash(
         "frahm.web", title="frahm", update_title="", serve_locally=True, add_log_handler=False,
@@ -95,11 +88,17 @@ def _add_answers(server: Any, sessions: Sessions) -> None:
 
         return answer(lambda wanted: answers.exact(wanted, sessions))
 
+    @server.post("/drawn/decision")
+    def decision() -> Response:
+        from frahm.web import answers
+
+        return answer(lambda wanted: answers.decision(wanted, sessions))
+
 
 def _read(values: Any, case: Mapping[str, Any]) -> Reading:
     """What the fields say at this moment: the script hands them over before an action is taken."""
     opened = load_case(dict(case))
-    return reading(opened, values or field_texts(opened, start_detuning(opened)))
+    return reading(opened, values or field_texts(opened, Axis(opened).start))
 
 
 def _add_motion(app: Dash, sessions: Sessions) -> None:
@@ -111,12 +110,12 @@ def _add_motion(app: Dash, sessions: Sessions) -> None:
     )  # fmt: skip
     def motion(clicked: Any, presses: Any, values: Any, case: Any, session_name: str) -> tuple[Any, ...]:
         read = _read(values, case)
-        near, detuning = None, read.detuning
+        near, at = None, read.at
         if ctx.triggered_id == "clicked":
-            near, detuning = clicked["near"], clicked["detuning"]
+            near, at = clicked["near"], clicked["place"]
         elif read.problems:
             return no_update, "Not computed: see the field marked.", *[no_update] * 4
-        job = sessions.of(session_name).quick.ask("motion", read.case.to_dict(), detuning=detuning, near=near)
+        job = sessions.of(session_name).quick.ask("motion", read.case.to_dict(), at=at, near=near)
         if job is None:
             return (no_update,) * 6
         if job.result is None:
@@ -138,7 +137,7 @@ def _add_long_jobs(app: Dash, sessions: Sessions) -> None:
         if ctx.triggered_id == "report":
             worker.start("report", read.case.to_dict())
         else:
-            worker.start("attractors", read.case.to_dict(), detuning=read.detuning)
+            worker.start("attractors", read.case.to_dict(), at=read.at)
         return False, ""
 
     @app.callback(
@@ -172,7 +171,7 @@ def _finished(job: Job, now: Reading) -> tuple[Any, ...]:
 
     found, case = job.result, load_case(job.case)
     table = words.attractor_table(case, found)
-    fresh = case.digest == now.case.digest and found["detuning"] == now.detuning
+    fresh = case.digest == now.case.digest and found["at"] == now.at
     marks = attractor_lines(found) if fresh else no_update
     return words.attractors_status(found), table, "" if fresh else "stale", marks, no_update
 
@@ -182,22 +181,26 @@ def _add_files(app: Dash, sessions: Sessions) -> None:
         Output("case", "data"), Output("fields", "data"), Output("texts", "data"), Output("case-name", "children"),
         Output("notice", "children"),
         Input({"preset": ALL}, "n_clicks"), Input("load", "contents"), Input("to-wind", "n_clicks"),
+        Input("add-sink", "n_clicks"),
         State("load", "filename"), *_VALUES, prevent_initial_call=True,
     )  # fmt: skip
-    def other(presses: Any, contents: Any, wind: Any, filename: Any, values: Any, case: Any, _: str) -> tuple[Any, ...]:
+    def other(
+        presses: Any, contents: Any, wind: Any, adds: Any, filename: Any, values: Any, case: Any, session_name: str
+    ) -> tuple[Any, ...]:
         try:
             if ctx.triggered_id == "load":
                 chosen = _uploaded(contents, filename)
+            elif ctx.triggered_id == "add-sink":
+                chosen = _with_sink(_read(values, case), sessions.of(session_name))
             elif ctx.triggered_id == "to-wind":
                 texts, notice = _to_wind(_read(values, case).case)
                 return no_update, no_update, texts, no_update, notice
             else:
                 preset = next(one for one in PRESETS if one.figure == ctx.triggered_id["preset"])
                 chosen = preset.case()
-            check_shown(chosen)
         except ParameterError as error:
             return (*[no_update] * 4, str(error))
-        return chosen.to_dict(), field_facts(chosen, start_detuning(chosen)), no_update, heading(chosen), ""
+        return chosen.to_dict(), field_facts(chosen, Axis(chosen).start), no_update, heading(chosen), ""
 
     @app.callback(
         Output("download", "data", allow_duplicate=True), Output("notice", "children", allow_duplicate=True),
@@ -219,11 +222,22 @@ def _add_files(app: Dash, sessions: Sessions) -> None:
 
 
 def _to_wind(case: Case) -> tuple[Any, str]:
-    """Text of the field of the detuning; or none and a notice, if the wind sheds outside the window."""
-    at, (lo, hi) = shedding_detuning(case), detuning_window(case)
-    if lo <= at <= hi:
-        return {DETUNING: shown(at)}, ""
-    return no_update, words.wind_outside(at, lo, hi)
+    """Text of the field of the place; or none and a notice, if the wind of the case is outside the range."""
+    axis = Axis(case)
+    if axis.ends[0] <= axis.wind <= axis.ends[1]:
+        return {axis.name: shown(axis.start)}, ""
+    return no_update, words.wind_outside(axis)
+
+
+def _with_sink(read: Reading, session: Session) -> Case:
+    """The case with a sink of 2 % of its pipe's mass."""
+    if read.problems:
+        raise ParameterError("absorbers", "a field marked", "values that are valid")
+    job = session.quick.ask("first sink", read.case.to_dict())
+    if job is None or job.result is None:
+        why = "another was asked for" if job is None else job.problem
+        raise ParameterError("absorbers", "none", "a sink that can be found", hint=why)
+    return load_case(job.result["case"])
 
 
 def _saved_curve(case: Case, stem: str, session: Session) -> tuple[Any, str]:

@@ -16,6 +16,8 @@ SILENCE = 150.0
 _LOOK_AROUND = 2.0
 _PATIENCE = 3.0
 MOST_SESSIONS = 64
+_CANCELLED, _REPLACED, _CLOSED = "Cancelled.", "Replaced by a newer one.", "The page was closed."
+ENDED = (_CANCELLED, _REPLACED, _CLOSED)  # why a job has no result, where nothing went wrong
 
 
 @dataclass
@@ -136,10 +138,10 @@ class Worker:
     def start(self, name: str, case: dict[str, Any], **arguments: Any) -> Job:
         """Start a job; one that is still running is cancelled."""
         with self._lock:
-            self._end_job("Replaced by a newer one.")
+            self._end_job(_REPLACED)
             job = self.job = Job(name, case)
             if self._closed:
-                job.end("The page was closed.")
+                job.end(_CLOSED)
                 return job
             job.process = self._processes.take()
             threading.Thread(target=self._follow, args=(job,), daemon=True).start()
@@ -165,13 +167,13 @@ class Worker:
     def cancel(self) -> None:
         """End the job that is running, at once."""
         with self._lock:
-            self._end_job("Cancelled.")
+            self._end_job(_CANCELLED)
 
     def close(self) -> None:
         """End the job that is running, and take no more."""
         with self._lock:
             self._closed = True
-            self._end_job("The page was closed.")
+            self._end_job(_CLOSED)
 
     def _end_job(self, reason: str) -> None:
         if self.job is not None and self.job.end(reason) and self.job.process is not None:
@@ -206,8 +208,8 @@ class Session:
 
     Attributes
     ----------
-    quick, long : Worker
-        For jobs of a moment, and for those that take their time.
+    quick, deciding, long : Worker
+        For jobs of a moment, for the decision that follows them, and for what is asked for and takes its time.
     heard : float
         When it was last heard of [s].
     newest : int
@@ -217,6 +219,7 @@ class Session:
     """
 
     quick: Worker
+    deciding: Worker
     long: Worker
     heard: float = field(default_factory=time.monotonic)
     newest: int = 0
@@ -225,6 +228,7 @@ class Session:
     def close(self) -> None:
         """End its work."""
         self.quick.close()
+        self.deciding.close()
         self.long.close()
 
 
@@ -247,7 +251,7 @@ class Sessions:
                 threading.Thread(target=self._sessions.pop(oldest).close, daemon=True).start()
             session = self._sessions.get(name)
             if session is None:
-                session = self._sessions[name] = Session(Worker(self._processes), Worker(self._processes))
+                session = self._sessions[name] = Session(*(Worker(self._processes) for _ in range(3)))
             session.heard = time.monotonic()
             return session
 

@@ -251,7 +251,7 @@ def test_the_motion_of_a_click_is_at_the_detuning_that_the_field_shows(visit):
         )
         expect(visitor.field("detuning")).to_have_value(text)
         expect(visitor.page.locator("#motion-status")).to_contain_text(f"At σ = {float(text):.4g} rad/s")
-        clicked = re.findall(r'"detuning":([^,]+),"near"', "".join(asked))
+        clicked = re.findall(r'"place":([^,]+),"near"', "".join(asked))
         assert float(clicked[-1]) == float(text)
 
 
