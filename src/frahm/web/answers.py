@@ -7,10 +7,11 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from frahm.case import Case, load_case
+from frahm.case import Case
 from frahm.errors import ParameterError
 from frahm.loads import lock_in_band
 from frahm.web import words
+from frahm.web.asked import read_case, read_json
 from frahm.web.controls import Reading, controls_of, field_texts, reading, spans, with_sink
 from frahm.web.figures import linear_lines, manifold_part, map_part, slow_part
 from frahm.web.layout import heading
@@ -21,7 +22,7 @@ from frahm.web.tuned import bare_response, tuned_mass_damper_response
 
 @functools.lru_cache(maxsize=64)
 def _case(text: str) -> Case:
-    return load_case(json.loads(text))
+    return read_case(read_json(text, "case"))
 
 
 def case_of(wanted: Mapping[str, Any]) -> Case:

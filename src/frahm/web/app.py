@@ -14,8 +14,19 @@ from flask import Response, request
 from frahm.case import Case, case_from_text, load_case
 from frahm.errors import ParameterError
 from frahm.web import words
+from frahm.web.asked import (
+    answer_problems,
+    check_callback,
+    read_case,
+    read_click,
+    read_question,
+    read_session,
+    read_text,
+    read_values,
+)
 from frahm.web.controls import Reading, field_facts, field_texts, reading, shown
 from frahm.web.front import HEAD
+from frahm.web.guard import RENDERER
 from frahm.web.layout import STYLE, heading, page
 from frahm.web.looks import figures
 from frahm.web.presets import PRESETS
@@ -23,7 +34,7 @@ from frahm.web.scope import PLANES, Axis, has_slow_flow
 from frahm.web.sessions import Job, Session, Sessions
 
 _INDEX = """{%metas%}<title>{%title%}</title>{%favicon%}{%css%}STYLE
-<script>window.frahmFigures = FIGURES;</script></head>
+<script type="application/json" id="figures-at-rest">FIGURES</script></head>
 <body>{%app_entry%}
 <footer>{%config%}{%scripts%}{%renderer%}</footer></body>
 </html>"""
@@ -39,7 +50,9 @@ def build_app(case: Case, sessions: Sessions) -> Dash:
         meta_tags=[{"name": "viewport", "content": "width=device-width, initial-scale=1"}], enable_mcp=False,
     )  # fmt: skip
     app.layout = lambda: page(case)
+    app.renderer = RENDERER
     _add_script(app)
+    _check_requests(app)
     _add_answers(app.server, sessions)
     _add_motion(app, sessions)
     _add_long_jobs(app, sessions)
@@ -63,11 +76,21 @@ def _add_script(app: Dash) -> None:
     script("moved", Input("motion-drawn", "data"), prevent_initial_call=True)
 
 
+def _check_requests(app: Dash) -> None:
+    """Malformed requests are refused before Dash takes them for its own."""
+    answer_problems(app.server)
+
+    @app.server.before_request
+    def check() -> None:
+        if request.path == "/_dash-update-component":
+            check_callback(request.get_data(), app.callback_map)
+
+
 def _add_answers(server: Any, sessions: Sessions) -> None:
     """Questions of the script about the values in the fields: plain requests, because a drag asks many a second."""
 
     def answer(found: Callable[[Any], Mapping[str, Any]]) -> Response:
-        text = json.dumps(found(request.get_json()), allow_nan=False, separators=(",", ":"))
+        text = json.dumps(found(read_question(request.get_data())), allow_nan=False, separators=(",", ":"))
         return Response(text, mimetype="application/json")
 
     @server.post("/drawn/response")
@@ -95,10 +118,10 @@ def _add_answers(server: Any, sessions: Sessions) -> None:
         return answer(lambda wanted: answers.decision(wanted, sessions))
 
 
-def _read(values: Any, case: Mapping[str, Any]) -> Reading:
+def _read(values: Any, case: Any) -> Reading:
     """What the fields say at this moment: the script hands them over before an action is taken."""
-    opened = load_case(dict(case))
-    return reading(opened, values or field_texts(opened, Axis(opened).start))
+    opened = read_case(case)
+    return reading(opened, read_values(values) or field_texts(opened, Axis(opened).start))
 
 
 def _add_motion(app: Dash, sessions: Sessions) -> None:
@@ -112,10 +135,10 @@ def _add_motion(app: Dash, sessions: Sessions) -> None:
         read = _read(values, case)
         near, at = None, read.at
         if ctx.triggered_id == "clicked":
-            near, at = clicked["near"], clicked["place"]
+            at, near = read_click(clicked)
         elif read.problems:
             return no_update, "Not computed: see the field marked.", *[no_update] * 4
-        job = sessions.of(session_name).quick.ask("motion", read.case.to_dict(), at=at, near=near)
+        job = sessions.of(read_session(session_name)).quick.ask("motion", read.case.to_dict(), at=at, near=near)
         if job is None:
             return (no_update,) * 6
         if job.result is None:
@@ -133,7 +156,7 @@ def _add_long_jobs(app: Dash, sessions: Sessions) -> None:
         read = _read(values, case)
         if read.problems:
             return no_update, "Not started: see the field marked."
-        worker = sessions.of(session_name).long
+        worker = sessions.of(read_session(session_name)).long
         if ctx.triggered_id == "report":
             worker.start("report", read.case.to_dict())
         else:
@@ -148,7 +171,7 @@ def _add_long_jobs(app: Dash, sessions: Sessions) -> None:
         Input("tick", "n_intervals"), Input("cancel", "n_clicks"), *_VALUES, prevent_initial_call=True,
     )  # fmt: skip
     def look(ticks: Any, presses: Any, values: Any, case: Any, session_name: str) -> tuple[Any, ...]:
-        worker = sessions.of(session_name).long
+        worker = sessions.of(read_session(session_name)).long
         if ctx.triggered_id == "cancel":
             worker.cancel()
         job = worker.job
@@ -189,15 +212,14 @@ def _add_files(app: Dash, sessions: Sessions) -> None:
     ) -> tuple[Any, ...]:
         try:
             if ctx.triggered_id == "load":
-                chosen = _uploaded(contents, filename)
+                chosen = _uploaded(read_text(contents, "contents"), read_text(filename, "filename"))
             elif ctx.triggered_id == "add-sink":
-                chosen = _with_sink(_read(values, case), sessions.of(session_name))
+                chosen = _with_sink(_read(values, case), sessions.of(read_session(session_name)))
             elif ctx.triggered_id == "to-wind":
                 texts, notice = _to_wind(_read(values, case).case)
                 return no_update, no_update, texts, no_update, notice
             else:
-                preset = next(one for one in PRESETS if one.figure == ctx.triggered_id["preset"])
-                chosen = preset.case()
+                chosen = _preset(ctx.triggered_id)
         except ParameterError as error:
             return (*[no_update] * 4, str(error))
         return chosen.to_dict(), field_facts(chosen, Axis(chosen).start), no_update, heading(chosen), ""
@@ -211,14 +233,22 @@ def _add_files(app: Dash, sessions: Sessions) -> None:
         save: Any, curve: Any, motion: Any, history: Any, values: Any, case: Any, session_name: str
     ) -> tuple[Any, Any]:
         if ctx.triggered_id == "save-history":
-            return dcc.send_string(history, "time-history.txt"), ""
+            return dcc.send_string(read_text(history, "history"), "time-history.txt"), ""
         read = _read(values, case)
         if read.problems:
             return no_update, "Not saved: see the field marked."
         stem = "".join(c if c.isalnum() or c in "-_" else "-" for c in read.case.name)
         if ctx.triggered_id == "save":
             return dcc.send_string(read.case.to_yaml(), f"{stem}.yaml"), ""
-        return _saved_curve(read.case, stem, sessions.of(session_name))
+        return _saved_curve(read.case, stem, sessions.of(read_session(session_name)))
+
+
+def _preset(pressed: Any) -> Case:
+    figure = pressed["preset"] if isinstance(pressed, dict) else pressed
+    for preset in PRESETS:
+        if preset.figure == figure:
+            return preset.case()
+    raise ParameterError("preset", figure, "one of " + ", ".join(str(preset.figure) for preset in PRESETS))
 
 
 def _to_wind(case: Case) -> tuple[Any, str]:
@@ -264,11 +294,11 @@ def _uploaded(contents: str, filename: str) -> Case:
 def _add_signs_of_life(server: Any, sessions: Sessions) -> None:
     @server.post("/alive/<name>")
     def alive(name: str) -> Response:
-        sessions.of(name)
+        sessions.of(read_session(name))
         return Response(status=204)
 
     @server.post("/closed/<name>")
     def closed(name: str) -> Response:
         request.get_data()
-        sessions.close(name)
+        sessions.close(read_session(name))
         return Response(status=204)

@@ -251,7 +251,9 @@ class Sessions:
                 threading.Thread(target=self._sessions.pop(oldest).close, daemon=True).start()
             session = self._sessions.get(name)
             if session is None:
-                session = self._sessions[name] = Session(*(Worker(self._processes) for _ in range(3)))
+                session = self._sessions[name] = Session(
+                    Worker(self._processes), Worker(self._processes), Worker(self._processes)
+                )
             session.heard = time.monotonic()
             return session
 

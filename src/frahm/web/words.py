@@ -9,6 +9,7 @@ import numpy as np
 
 from frahm import readable
 from frahm.case import Case
+from frahm.loads import lock_in_band
 from frahm.web.controls import Control, controls_of, shown, shown_symbol
 from frahm.web.scope import Axis
 from frahm.web.sessions import Job
@@ -33,6 +34,9 @@ OVER_WIND = (
     "Over the wind, each with its own lift: the slow flow knows one lift and is not drawn. The exact response is drawn "
     "each time the sliders rest; until then the curve of the last values stays, in a paler tint."
 )
+
+
+NO_LIMITS = "The case gives no limits to hold the motion against: see its section limits."
 
 
 def no_slow_status(case: Case) -> str:
@@ -166,7 +170,9 @@ def decision_row(case: Case, device: str, found: dict[str, Any]) -> dict[str, st
         "place": f"at {readable.speed(speed)}" if windy else f"at σ = {worst['detuning']:.3g} rad/s",
         "used": limits,
         "verdict": judged["verdict"].upper() if judged["rows"] or found["unverified"] else "NO LIMITS",
-        "sentence": (judged["sentence"] + doubt + _about_band(found["lock_in"])) if device == "this" else "",
+        "sentence": (judged["sentence"] if judged["rows"] else NO_LIMITS) + doubt + _about_band(case)
+        if device == ("this" if case.absorbers else "bare")
+        else "",
     }
 
 
@@ -180,11 +186,11 @@ def _first(doubts: list[str]) -> str:
     return doubts[0].rstrip(".") + (f", and {more} more: see the full report." if more else ".")
 
 
-def _about_band(lock_in: dict[str, Any] | None) -> str:
-    if lock_in is None:
+def _about_band(case: Case) -> str:
+    band = lock_in_band(case)
+    if not band.low < band.high:
         return ""
-    low, high = lock_in["band"]
-    return f" Codes expect lock-in from {low:.3g} to {high:.3g} m/s ({lock_in['standing']})."
+    return f" Codes expect lock-in from {band.low:.3g} to {band.high:.3g} m/s ({band.standing})."
 
 
 def attractors_status(found: dict[str, Any]) -> str:

@@ -3,7 +3,7 @@
 (function () {
   "use strict";
   const page = (window.frahmPage = window.frahmPage || {});
-  const still = window.frahmFigures;
+  const still = JSON.parse(document.getElementById("figures-at-rest").textContent);
   const rank = {};
   Object.keys(still.looks.response).forEach((look, i) => { rank[look] = i; });
   const parts = { live: null, exact: null, stale: false, marks: [], manifold: null, motion: null, now: null, map: null };
@@ -78,20 +78,22 @@
     const axis = (own, range) => Object.assign({}, own, range ? { range: range } : {});
     const shapes = [upright(live.at, { color: still.beside.color, width: 1 })];
     if (live.wind !== null) shapes.push(upright(live.wind, { color: still.beside.wind, width: 1, dash: "dot" }));
-    if (live.band) {
-      shapes.push({ type: "rect", xref: "x", yref: "paper", x0: live.band[0], x1: live.band[1], y0: 0, y1: 1, layer: "below",
+    if (live.band) { // behind the lines
+      shapes.unshift({ type: "rect", xref: "x", yref: "paper", x0: live.band[0], x1: live.band[1], y0: 0, y1: 1, layer: "below",
         fillcolor: still.beside.band, line: { width: 0 } });
     }
     const title = { title: { text: still.axes[live.axis][0] } };
-    const alone = live.absorber ? [{}, title, {}, {}] // a pipe without absorber has the whole height
-      : [Object.assign({ showticklabels: true, matches: undefined }, title), { visible: false }, { domain: [0, 1] }, { visible: false }];
-    const rows = lines.some((line) => line.row) ? [] : [{ look: "bare", row: 1, x: [null], y: [null] }]; // keeps its axes
-    react("response", lines.concat(rows).map(trace), Object.assign({}, base, {
-      shapes: shapes,
-      xaxis: Object.assign(axis(base.xaxis, live.window), alone[0]), xaxis2: Object.assign(axis(base.xaxis2, live.window), alone[1]),
-      yaxis: Object.assign(axis(base.yaxis, tops[0] && [0, tops[0]]), alone[2]),
-      yaxis2: Object.assign(axis(base.yaxis2, tops[1] && [0, tops[1]]), alone[3]),
-      uirevision: live.axis + live.absorber,
+    if (!live.absorber) lines = lines.filter((line) => !line.row);
+    const rows = !live.absorber || lines.some((line) => line.row) ? [] : [{ look: "bare", row: 1, x: [null], y: [null] }]; // keeps its axes
+    const axes = live.absorber ? {
+      xaxis: axis(base.xaxis, live.window), xaxis2: Object.assign(axis(base.xaxis2, live.window), title),
+      yaxis: axis(base.yaxis, tops[0] && [0, tops[0]]), yaxis2: axis(base.yaxis2, tops[1] && [0, tops[1]]),
+    } : { // a pipe without absorber has the whole height
+      xaxis: Object.assign(axis(base.xaxis2, live.window), title, { anchor: "y" }), xaxis2: undefined,
+      yaxis: Object.assign(axis(base.yaxis, tops[0] && [0, tops[0]]), { domain: [0, 1] }), yaxis2: undefined,
+    };
+    react("response", lines.concat(rows).map(trace), Object.assign({}, base, axes, {
+      shapes: shapes, uirevision: live.axis + live.absorber,
     }));
     listen("response", (point) => page.clicked(point.x, point.y, point.data.yaxis === "y2"));
   }
