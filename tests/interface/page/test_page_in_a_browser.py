@@ -455,6 +455,42 @@ def test_foreign_hosts_and_origins_are_refused_by_the_running_server(server):
         connection.close()
 
 
+BARE = frahm.load_case(
+    {
+        "name": "brace",
+        "pipe": {
+            "kind": "tube", "diameter": "24 inch", "wall": "0.5 inch", "length": "28 m", "damping_ratio": 0.0015,
+            "mode_count": 3, "supports": [{"at": 0, "kind": "clamped"}, {"at": "28 m", "kind": "pinned"}],
+        },
+        "wind": {"speed": 12.0, "range": [0.0, 14.0], "strouhal": "en1991", "lift_coefficient": "en1991"},
+        "absorbers": [], "limits": {"amplitude_ratio": 0.05},
+    }
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_a_bare_pipe_in_the_wind_is_decided_and_takes_a_sink(visit, tmp_path, width):
+    visitor = visit().rest()
+    visitor.page.set_viewport_size({"width": width, "height": 844})
+    load(visitor, BARE, tmp_path)
+    results = analyse(BARE).results
+    cell = visitor.page.locator("#decision-bare-peak")
+    expect(cell).to_have_text(f"{1e3 * results['without_absorber']['worst']['pipe_peak']:.1f} mm")
+    expect(visitor.page.locator("#decision-bare-verdict")).to_have_text(results["acceptance"]["verdict"].upper())
+    expect(visitor.page.locator("#decision-tuned-verdict")).to_have_text("PASS")
+    expect(visitor.page.locator("#decision-this")).to_be_hidden()
+    expect(visitor.page.locator("#decision-status")).to_contain_text("FAIL: A/D 0.116 of 0.05")
+    curve = frahm.frequency_response(BARE)
+    (bare,) = [trace for trace in visitor.lines() if trace["name"] == "without absorber"]
+    assert max(bare["y"]) == pytest.approx(curve.pipe_peak.max(), rel=1e-3)
+    assert bare["x"][0] == pytest.approx(curve.wind_speed[0], rel=1e-9)
+    assert axe_faults(visitor.page) == []
+    visitor.page.locator("#add-sink").click()
+    expect(visitor.field("rho2")).to_have_value("0.02")
+    expect(visitor.page.locator("#decision-this-verdict")).to_have_text("PASS")
+    expect(visitor.page.locator("#add-sink")).to_be_hidden()
+
+
 def test_a_server_that_has_ended_is_reported_and_leaves_no_process(context):
     server = start("jacket-pipe")
     visitor = Visitor(context.new_page(), server.address).open()

@@ -89,10 +89,11 @@
       xaxis: axis(base.xaxis, live.window), xaxis2: Object.assign(axis(base.xaxis2, live.window), title),
       yaxis: axis(base.yaxis, tops[0] && [0, tops[0]]), yaxis2: axis(base.yaxis2, tops[1] && [0, tops[1]]),
     } : { // a pipe without absorber has the whole height
-      xaxis: Object.assign(axis(base.xaxis2, live.window), title, { anchor: "y" }), xaxis2: undefined,
-      yaxis: Object.assign(axis(base.yaxis, tops[0] && [0, tops[0]]), { domain: [0, 1] }), yaxis2: undefined,
+      xaxis: Object.assign(axis(base.xaxis2, live.window), title, { anchor: "y" }),
+      yaxis: Object.assign(axis(base.yaxis, tops[0] && [0, tops[0]]), { domain: [0, 1] }),
     };
-    react("response", lines.concat(rows).map(trace), Object.assign({}, base, axes, {
+    const { xaxis, xaxis2, yaxis, yaxis2, ...rest } = base;
+    react("response", lines.concat(rows).map(trace), Object.assign(rest, axes, {
       shapes: shapes, uirevision: live.axis + live.absorber,
     }));
     listen("response", (point) => page.clicked(point.x, point.y, point.data.yaxis === "y2"));
