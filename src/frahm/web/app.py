@@ -156,7 +156,9 @@ def _add_long_jobs(app: Dash, sessions: Sessions) -> None:
         read = _read(values, case)
         if read.problems:
             return no_update, "Not started: see the field marked."
-        worker = sessions.of(read_session(session_name)).long
+        session = sessions.of(read_session(session_name))
+        session.deciding.cancel()  # what is asked for does not wait for what is not
+        worker = session.long
         if ctx.triggered_id == "report":
             worker.start("report", read.case.to_dict())
         else:

@@ -19,6 +19,7 @@ SILENCE = 150.0
 _LOOK_AROUND = 2.0
 _PATIENCE = 3.0
 MOST_SESSIONS = 64
+_DECIDING = 120.0  # [s] a decision may take: nobody asked for it, and others wait for its process
 _COMMAND = (sys.executable, "-m", "frahm.web.worker")
 _CANCELLED, _REPLACED, _CLOSED = "Cancelled.", "Replaced by a newer one.", "The page was closed."
 ENDED = (_CANCELLED, _REPLACED, _CLOSED)  # why a job has no result, where nothing went wrong
@@ -207,9 +208,12 @@ class Worker:
         Whose page it is.
     long : bool
         Whether its jobs may take their time.
+    most : float, optional
+        Time [s] after which a job that is waited for is ended.
     """
 
-    def __init__(self, processes: Processes, visitor: object, long: bool = False) -> None:
+    def __init__(self, processes: Processes, visitor: object, long: bool = False, most: float | None = None) -> None:
+        self._most = most
         self._processes, self._visitor, self._long = processes, visitor, long
         self._lock = threading.Lock()
         self._asked: dict[str, int] = {}
@@ -239,7 +243,9 @@ class Worker:
             if mine != self._asked[name]:
                 return None
             job = self.start(name, case, **arguments)
-            job.done.wait()
+            if not job.done.wait(self._most) and job is self.job:
+                with self._lock:
+                    self._end_job(f"It took more than {self._most:g} s; the full report has no such limit.")
         return job if mine == self._asked[name] else None
 
     def cancel(self) -> None:
@@ -328,9 +334,8 @@ class Session:
     def of(cls, processes: Processes) -> Session:
         """A session whose jobs share these processes with those of others."""
         visitor = _Visitor()
-        return cls(
-            Worker(processes, visitor), Worker(processes, visitor, long=True), Worker(processes, visitor, long=True)
-        )
+        deciding = Worker(processes, visitor, long=True, most=_DECIDING)
+        return cls(Worker(processes, visitor), deciding, Worker(processes, visitor, long=True))
 
     def close(self) -> None:
         """End its work."""
