@@ -159,7 +159,11 @@
         answer = response.ok ? await response.json() : {};
       } catch (error) { // it has ended: the beat says so
       }
-      if (state.key !== key || answer.key !== key) return; // newer values come: they ask again
+      if (state.key !== key) return; // newer values come: they ask again
+      if (answer.key !== key) {
+        say("decision-status", sentence + "Not finished: what was asked for went before. A changed value starts it again.");
+        return;
+      }
       cells.forEach((name) => say("decision-" + device + "-" + name, answer.row[name]));
       rowOf(device).classList.remove("stale");
       rowOf(device).dataset.verdict = answer.row.verdict;
