@@ -7,20 +7,22 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from frahm.case import Case, load_case
+from frahm.case import Case
 from frahm.errors import ParameterError
+from frahm.loads import lock_in_band
 from frahm.web import words
-from frahm.web.controls import DETUNING, controls_of, field_texts, reading, spans, with_sink
+from frahm.web.asked import read_case, read_json
+from frahm.web.controls import Reading, controls_of, field_texts, reading, spans, with_sink
 from frahm.web.figures import linear_lines, manifold_part, map_part, slow_part
 from frahm.web.layout import heading
-from frahm.web.scope import detuning_window, has_slow_flow, shedding_detuning
-from frahm.web.sessions import Sessions
+from frahm.web.scope import has_slow_flow
+from frahm.web.sessions import ENDED, Sessions
 from frahm.web.tuned import bare_response, tuned_mass_damper_response
 
 
 @functools.lru_cache(maxsize=64)
 def _case(text: str) -> Case:
-    return load_case(json.loads(text))
+    return read_case(read_json(text, "case"))
 
 
 def case_of(wanted: Mapping[str, Any]) -> Case:
@@ -34,27 +36,29 @@ def response(wanted: Mapping[str, Any]) -> dict[str, Any]:
     problems = dict(read.problems)
     if not problems:
         try:
-            return _drawn(read.case, read.detuning, bool(wanted["tuned"]))
+            return _drawn(read, bool(wanted["tuned"]))
         except ParameterError as error:
             names = {control.name for control in controls_of(read.case)}
-            problems[error.name if error.name in names else DETUNING] = str(error)
+            problems[error.name if error.name in names else read.axis.name] = str(error)
     return {"problems": problems, "status": words.NOT_VALID}
 
 
-def _drawn(case: Case, detuning: float, tuned: bool) -> dict[str, Any]:
-    slow = has_slow_flow(case)
+def _drawn(read: Reading, tuned: bool) -> dict[str, Any]:
+    case, axis, slow = read.case, read.axis, has_slow_flow(read.case)
     part: dict[str, Any] = {"lines": [], "points": [], "tops": None}
-    status = words.NO_SLOW_FLOW
+    status = words.no_slow_status(case)
     if slow:
-        part, curve = slow_part(case, detuning)
+        part, curve = slow_part(case, read.at)
         status = words.slow_status(curve)
     part["lines"] += linear_lines("bare", bare_response(case))
     if tuned:
         part["lines"] += linear_lines("tuned", tuned_mass_damper_response(case))
-    shedding = shedding_detuning(case)
+    band = lock_in_band(case)
     return {
         "problems": {}, "slow": slow, "key": case.digest, "part": part, "status": status, "heading": heading(case),
-        "detuning": detuning, "wind": shedding if abs(shedding) < 1e300 else None, "window": detuning_window(case),
+        "at": read.at, "wind": axis.wind if abs(axis.wind) < 1e300 else None, "window": axis.ends, "axis": axis.name,
+        "absorber": bool(case.absorbers),
+        "band": [band.low, band.high] if axis.over_wind and band.low < band.high else None,
     }  # fmt: skip
 
 
@@ -64,13 +68,13 @@ def beside(wanted: Mapping[str, Any]) -> dict[str, Any]:
     if read.problems or not has_slow_flow(read.case):
         return {}
     case, plane = read.case, wanted["plane"]
-    span = spans(case)[plane]
+    span = spans(case_of(wanted))[plane]
     same = with_sink(case, plane, span.low).with_name(case.name, "")  # the map does not depend on these
     key = f"{plane} {span.low} {span.high} {same.digest}"
-    manifold, lines = manifold_part(case, read.detuning)
+    manifold, lines = manifold_part(case, read.at)
     answer = {
         "manifold": manifold, "status": words.manifold_status(lines), "key": key,
-        "now": [read.detuning, case.absorbers[0].normalised(case.pipe.mass)[plane]],
+        "now": [read.at, case.absorbers[0].normalised(case.pipe.mass)[plane]],
     }  # fmt: skip
     if wanted["drawn"] != key:
         answer["map"] = map_part(case, plane, (span.low, span.high))
@@ -82,16 +86,31 @@ def exact(wanted: Mapping[str, Any], sessions: Sessions) -> dict[str, Any]:
     read = reading(case_of(wanted), wanted["values"])
     if read.problems:
         return {}
-    job = sessions.of(wanted["session"]).quick.ask("exact response", read.case.to_dict())
+    session = sessions.of(wanted["session"])
+    session.deciding.cancel()  # it was about other values
+    job = session.quick.ask("exact response", read.case.to_dict())
     if job is None:
         return {}
     if job.result is None:
         return {"key": read.case.digest, "part": None, "status": f"Exact response: unverified. {job.problem}"}
-    return {"key": read.case.digest, "part": job.result["part"], "status": words.exact_status(job.result)}
+    return {"key": read.case.digest, "part": job.result["part"], "status": words.exact_status(read.case, job.result)}
 
 
-def warm_up(case: Case, detuning: float) -> None:
+def decision(wanted: Mapping[str, Any], sessions: Sessions) -> dict[str, Any]:
+    """One row of the decision, of the device that is asked about; nothing if newer values were asked about."""
+    read, device = reading(case_of(wanted), wanted["values"]), wanted["device"]
+    if read.problems:
+        return {}
+    job = sessions.of(wanted["session"]).deciding.ask("decision", read.case.to_dict(), device=device)
+    if job is None or (job.result is None and job.problem in ENDED):
+        return {}
+    if job.result is None:
+        return {"key": read.case.digest, "row": words.no_decision(job.problem)}
+    return {"key": read.case.digest, "row": words.decision_row(read.case, device, job.result)}
+
+
+def warm_up(case: Case, at: float) -> None:
     """Draw once, so that the first visitor finds everything loaded."""
-    values = field_texts(case, detuning)
+    values = field_texts(case, at)
     wanted = {"case": json.dumps(case.to_dict()), "values": values, "tuned": False, "plane": "kappa", "drawn": ""}
     response(wanted)

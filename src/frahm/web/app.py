@@ -14,16 +14,27 @@ from flask import Response, request
 from frahm.case import Case, case_from_text, load_case
 from frahm.errors import ParameterError
 from frahm.web import words
-from frahm.web.controls import DETUNING, Reading, field_facts, field_texts, reading, shown
+from frahm.web.asked import (
+    answer_problems,
+    check_callback,
+    read_case,
+    read_click,
+    read_question,
+    read_session,
+    read_text,
+    read_values,
+)
+from frahm.web.controls import Reading, field_facts, field_texts, reading, shown
 from frahm.web.front import HEAD
+from frahm.web.guard import RENDERER
 from frahm.web.layout import STYLE, heading, page
 from frahm.web.looks import figures
 from frahm.web.presets import PRESETS
-from frahm.web.scope import PLANES, check_shown, detuning_window, has_slow_flow, shedding_detuning, start_detuning
+from frahm.web.scope import PLANES, Axis, has_slow_flow
 from frahm.web.sessions import Job, Session, Sessions
 
 _INDEX = """{%metas%}<title>{%title%}</title>{%favicon%}{%css%}STYLE
-<script>window.frahmFigures = FIGURES;</script></head>
+<script type="application/json" id="figures-at-rest">FIGURES</script></head>
 <body>{%app_entry%}
 <footer>{%config%}{%scripts%}{%renderer%}</footer></body>
 </html>"""
@@ -31,14 +42,7 @@ _VALUES = (State("values", "data"), State("case", "data"), State("session", "dat
 
 
 def build_app(case: Case, sessions: Sessions) -> Dash:
-    """The application that opens with `case`.
-
-    Raises
-    ------
-    ParameterError
-        If the page cannot show the case.
-    """
-    check_shown(case)
+    """The application that opens with `case`."""
     still = json.dumps(figures(), ensure_ascii=False).replace("</", "<\\/")
     app = Dash(
         "frahm.web", title="frahm", update_title="", serve_locally=True, add_log_handler=False,
@@ -46,7 +50,9 @@ def build_app(case: Case, sessions: Sessions) -> Dash:
         meta_tags=[{"name": "viewport", "content": "width=device-width, initial-scale=1"}], enable_mcp=False,
     )  # fmt: skip
     app.layout = lambda: page(case)
+    app.renderer = RENDERER
     _add_script(app)
+    _check_requests(app)
     _add_answers(app.server, sessions)
     _add_motion(app, sessions)
     _add_long_jobs(app, sessions)
@@ -70,11 +76,21 @@ def _add_script(app: Dash) -> None:
     script("moved", Input("motion-drawn", "data"), prevent_initial_call=True)
 
 
+def _check_requests(app: Dash) -> None:
+    """Malformed requests are refused before Dash takes them for its own."""
+    answer_problems(app.server)
+
+    @app.server.before_request
+    def check() -> None:
+        if request.path == "/_dash-update-component":
+            check_callback(request.get_data(), app.callback_map)
+
+
 def _add_answers(server: Any, sessions: Sessions) -> None:
     """Questions of the script about the values in the fields: plain requests, because a drag asks many a second."""
 
     def answer(found: Callable[[Any], Mapping[str, Any]]) -> Response:
-        text = json.dumps(found(request.get_json()), allow_nan=False, separators=(",", ":"))
+        text = json.dumps(found(read_question(request.get_data())), allow_nan=False, separators=(",", ":"))
         return Response(text, mimetype="application/json")
 
     @server.post("/drawn/response")
@@ -95,11 +111,17 @@ def _add_answers(server: Any, sessions: Sessions) -> None:
 
         return answer(lambda wanted: answers.exact(wanted, sessions))
 
+    @server.post("/drawn/decision")
+    def decision() -> Response:
+        from frahm.web import answers
 
-def _read(values: Any, case: Mapping[str, Any]) -> Reading:
+        return answer(lambda wanted: answers.decision(wanted, sessions))
+
+
+def _read(values: Any, case: Any) -> Reading:
     """What the fields say at this moment: the script hands them over before an action is taken."""
-    opened = load_case(dict(case))
-    return reading(opened, values or field_texts(opened, start_detuning(opened)))
+    opened = read_case(case)
+    return reading(opened, read_values(values) or field_texts(opened, Axis(opened).start))
 
 
 def _add_motion(app: Dash, sessions: Sessions) -> None:
@@ -111,12 +133,12 @@ def _add_motion(app: Dash, sessions: Sessions) -> None:
     )  # fmt: skip
     def motion(clicked: Any, presses: Any, values: Any, case: Any, session_name: str) -> tuple[Any, ...]:
         read = _read(values, case)
-        near, detuning = None, read.detuning
+        near, at = None, read.at
         if ctx.triggered_id == "clicked":
-            near, detuning = clicked["near"], clicked["detuning"]
+            at, near = read_click(clicked)
         elif read.problems:
             return no_update, "Not computed: see the field marked.", *[no_update] * 4
-        job = sessions.of(session_name).quick.ask("motion", read.case.to_dict(), detuning=detuning, near=near)
+        job = sessions.of(read_session(session_name)).quick.ask("motion", read.case.to_dict(), at=at, near=near)
         if job is None:
             return (no_update,) * 6
         if job.result is None:
@@ -134,11 +156,13 @@ def _add_long_jobs(app: Dash, sessions: Sessions) -> None:
         read = _read(values, case)
         if read.problems:
             return no_update, "Not started: see the field marked."
-        worker = sessions.of(session_name).long
+        session = sessions.of(read_session(session_name))
+        session.deciding.cancel()  # what is asked for does not wait for what is not
+        worker = session.long
         if ctx.triggered_id == "report":
             worker.start("report", read.case.to_dict())
         else:
-            worker.start("attractors", read.case.to_dict(), detuning=read.detuning)
+            worker.start("attractors", read.case.to_dict(), at=read.at)
         return False, ""
 
     @app.callback(
@@ -149,7 +173,7 @@ def _add_long_jobs(app: Dash, sessions: Sessions) -> None:
         Input("tick", "n_intervals"), Input("cancel", "n_clicks"), *_VALUES, prevent_initial_call=True,
     )  # fmt: skip
     def look(ticks: Any, presses: Any, values: Any, case: Any, session_name: str) -> tuple[Any, ...]:
-        worker = sessions.of(session_name).long
+        worker = sessions.of(read_session(session_name)).long
         if ctx.triggered_id == "cancel":
             worker.cancel()
         job = worker.job
@@ -172,7 +196,7 @@ def _finished(job: Job, now: Reading) -> tuple[Any, ...]:
 
     found, case = job.result, load_case(job.case)
     table = words.attractor_table(case, found)
-    fresh = case.digest == now.case.digest and found["detuning"] == now.detuning
+    fresh = case.digest == now.case.digest and found["at"] == now.at
     marks = attractor_lines(found) if fresh else no_update
     return words.attractors_status(found), table, "" if fresh else "stale", marks, no_update
 
@@ -182,22 +206,25 @@ def _add_files(app: Dash, sessions: Sessions) -> None:
         Output("case", "data"), Output("fields", "data"), Output("texts", "data"), Output("case-name", "children"),
         Output("notice", "children"),
         Input({"preset": ALL}, "n_clicks"), Input("load", "contents"), Input("to-wind", "n_clicks"),
+        Input("add-sink", "n_clicks"),
         State("load", "filename"), *_VALUES, prevent_initial_call=True,
     )  # fmt: skip
-    def other(presses: Any, contents: Any, wind: Any, filename: Any, values: Any, case: Any, _: str) -> tuple[Any, ...]:
+    def other(
+        presses: Any, contents: Any, wind: Any, adds: Any, filename: Any, values: Any, case: Any, session_name: str
+    ) -> tuple[Any, ...]:
         try:
             if ctx.triggered_id == "load":
-                chosen = _uploaded(contents, filename)
+                chosen = _uploaded(read_text(contents, "contents"), read_text(filename, "filename"))
+            elif ctx.triggered_id == "add-sink":
+                chosen = _with_sink(_read(values, case), sessions.of(read_session(session_name)))
             elif ctx.triggered_id == "to-wind":
                 texts, notice = _to_wind(_read(values, case).case)
                 return no_update, no_update, texts, no_update, notice
             else:
-                preset = next(one for one in PRESETS if one.figure == ctx.triggered_id["preset"])
-                chosen = preset.case()
-            check_shown(chosen)
+                chosen = _preset(ctx.triggered_id)
         except ParameterError as error:
             return (*[no_update] * 4, str(error))
-        return chosen.to_dict(), field_facts(chosen, start_detuning(chosen)), no_update, heading(chosen), ""
+        return chosen.to_dict(), field_facts(chosen, Axis(chosen).start), no_update, heading(chosen), ""
 
     @app.callback(
         Output("download", "data", allow_duplicate=True), Output("notice", "children", allow_duplicate=True),
@@ -208,22 +235,41 @@ def _add_files(app: Dash, sessions: Sessions) -> None:
         save: Any, curve: Any, motion: Any, history: Any, values: Any, case: Any, session_name: str
     ) -> tuple[Any, Any]:
         if ctx.triggered_id == "save-history":
-            return dcc.send_string(history, "time-history.txt"), ""
+            return dcc.send_string(read_text(history, "history"), "time-history.txt"), ""
         read = _read(values, case)
         if read.problems:
             return no_update, "Not saved: see the field marked."
         stem = "".join(c if c.isalnum() or c in "-_" else "-" for c in read.case.name)
         if ctx.triggered_id == "save":
             return dcc.send_string(read.case.to_yaml(), f"{stem}.yaml"), ""
-        return _saved_curve(read.case, stem, sessions.of(session_name))
+        return _saved_curve(read.case, stem, sessions.of(read_session(session_name)))
+
+
+def _preset(pressed: Any) -> Case:
+    figure = pressed["preset"] if isinstance(pressed, dict) else pressed
+    for preset in PRESETS:
+        if preset.figure == figure:
+            return preset.case()
+    raise ParameterError("preset", figure, "one of " + ", ".join(str(preset.figure) for preset in PRESETS))
 
 
 def _to_wind(case: Case) -> tuple[Any, str]:
-    """Text of the field of the detuning; or none and a notice, if the wind sheds outside the window."""
-    at, (lo, hi) = shedding_detuning(case), detuning_window(case)
-    if lo <= at <= hi:
-        return {DETUNING: shown(at)}, ""
-    return no_update, words.wind_outside(at, lo, hi)
+    """Text of the field of the place; or none and a notice, if the wind of the case is outside the range."""
+    axis = Axis(case)
+    if axis.ends[0] <= axis.wind <= axis.ends[1]:
+        return {axis.name: shown(axis.start)}, ""
+    return no_update, words.wind_outside(axis)
+
+
+def _with_sink(read: Reading, session: Session) -> Case:
+    """The case with a sink of 2 % of its pipe's mass."""
+    if read.problems:
+        raise ParameterError("absorbers", "a field marked", "values that are valid")
+    job = session.quick.ask("first sink", read.case.to_dict())
+    if job is None or job.result is None:
+        why = "another was asked for" if job is None else job.problem
+        raise ParameterError("absorbers", "none", "a sink that can be found", hint=why)
+    return load_case(job.result["case"])
 
 
 def _saved_curve(case: Case, stem: str, session: Session) -> tuple[Any, str]:
@@ -250,11 +296,11 @@ def _uploaded(contents: str, filename: str) -> Case:
 def _add_signs_of_life(server: Any, sessions: Sessions) -> None:
     @server.post("/alive/<name>")
     def alive(name: str) -> Response:
-        sessions.of(name)
+        sessions.of(read_session(name))
         return Response(status=204)
 
     @server.post("/closed/<name>")
     def closed(name: str) -> Response:
         request.get_data()
-        sessions.close(name)
+        sessions.close(read_session(name))
         return Response(status=204)

@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from frahm.case import Case, CubicLaw, Pipe, PolynomialLaw, Tube, field_table
+from frahm.case import Case, CubicLaw, Pipe, PolynomialLaw, TransverseSpringsLaw, Tube, field_table
 from frahm.case.quantities import Label
 from frahm.errors import ParameterError, check_number
 from frahm.units import si_value
-from frahm.web.scope import detuning_window
+from frahm.web.scope import DETUNING, PLACE, Axis
 
 STEPS = 1000  # positions of a slider
 
@@ -100,7 +100,9 @@ def with_sink(case: Case, name: str, value: float) -> Case:
     return case.with_absorber(**change)
 
 
-def _normalised(name: str, title: str, symbol: str, unit: str, span: Span, above_zero: bool) -> Control:
+def _normalised(
+    name: str, title: str, symbol: str, unit: str, span: Callable[[Case, float], Span], above_zero: bool
+) -> Control:
     """Control of a value of the first absorber over the mass of the pipe."""
 
     def value(case: Case) -> float:
@@ -111,7 +113,7 @@ def _normalised(name: str, title: str, symbol: str, unit: str, span: Span, above
         number = check_number(name, read_number(str(given), unit, name), unit=unit or "-", **bounds)
         return with_sink(case, name, number)
 
-    return Control(name, title, symbol, unit, value, changed, lambda case: span.holding(value(case)))
+    return Control(name, title, symbol, unit, value, changed, lambda case: span(case, value(case)).holding(value(case)))
 
 
 def _law_control(kind: str, field: str) -> Control:
@@ -125,7 +127,13 @@ def _law_control(kind: str, field: str) -> Control:
     def changed(case: Case, given: float | str) -> Case:
         return with_law(case, field, read_number(str(given), facts.unit, name))
 
-    return Control(name, facts.title, facts.symbol, facts.unit, value, changed, lambda case: _around(value(case)))
+    def span(case: Case) -> Span:
+        if value(case) or not isinstance(case.absorbers[0].law, TransverseSpringsLaw):
+            return _around(value(case))
+        springs = case.absorbers[0].law  # without pretension: as much as draws them out by a tenth, either way
+        return Span(-0.1 * springs.stiffness * springs.length, 0.1 * springs.stiffness * springs.length, False)
+
+    return Control(name, facts.title, facts.symbol, facts.unit, value, changed, span)
 
 
 def _coefficient_control(power: int) -> Control:
@@ -148,10 +156,10 @@ def _coefficient_control(power: int) -> Control:
 
 
 def _around(value: float) -> Span:
-    """A decade to both sides of a positive value; for others as far again beyond zero."""
+    """A decade to both sides of a positive value; for a negative one as far again beyond zero."""
     if value > 0:
         return Span(value / 10, 10 * value, True)
-    return Span(2 * value, -2 * value, False) if value < 0 else Span(-1.0, 1.0, False)
+    return Span(2 * value, -2 * value, False)
 
 
 def _position_control() -> Control:
@@ -193,18 +201,32 @@ def _field_control(path: str, span: Callable[[float], Span]) -> Control:
     return Control(f"{section}.{field}", facts.title, facts.symbol, facts.unit, value, changed, ends)
 
 
-_KAPPA = _normalised("kappa", "Cubic stiffness of the sink", "κ", "1/(m^2 s^2)", Span(1.0, 1e4, True), True)
+def _damping_span(case: Case, value: float) -> Span:
+    """Loss factors xi2/(rho2 omega) of the absorber from 0.005 to 2."""
+    scale = case.absorbers[0].normalised(case.pipe.mass)["rho2"] * case.pipe.frequency
+    return Span(5e-3 * scale, 2 * scale, True)
+
+
+def _stiffness_span(case: Case, value: float) -> Span:
+    return Span(value / 300, 30 * value, True)
+
+
+def _mass_span(case: Case, value: float) -> Span:
+    return Span(2e-3, 0.1, True)  # a ratio
+
+
+_KAPPA = _normalised("kappa", "Cubic stiffness of the sink", "κ", "1/(m^2 s^2)", _stiffness_span, True)
 _XI2, _RHO2 = (
     {word: _normalised(name, f"{title} of the {word}", symbol, unit, span, above_zero) for word in ("sink", "absorber")}
     for name, title, symbol, unit, span, above_zero in (
-        ("xi2", "Damping", "ξ₂", "1/s", Span(5e-4, 0.2, True), False),
-        ("rho2", "Mass ratio", "ρ₂", "", Span(2e-3, 0.1, True), True),
+        ("xi2", "Damping", "ξ₂", "1/s", _damping_span, False),
+        ("rho2", "Mass ratio", "ρ₂", "", _mass_span, True),
     )
 )
 _WIND = _field_control("wind.speed", lambda speed: Span(0.5 * speed, 2 * speed, False))
 _FREQUENCY = _field_control("pipe.frequency", lambda omega: Span(0.7 * omega, 1.3 * omega, False))
 _RATIO, _TUBE_RATIO = (
-    _field_control(f"{pipe}.damping_ratio", lambda zeta: Span(0.0, max(0.02, 2 * zeta), False))
+    _field_control(f"{pipe}.damping_ratio", lambda zeta: Span(0.0, 10 * zeta if zeta else 0.02, False))
     for pipe in ("pipe", "pipe(tube)")
 )
 _WALL = _field_control("pipe(tube).wall", lambda wall: Span(0.5 * wall, 1.5 * wall, False))
@@ -216,6 +238,8 @@ def controls_of(case: Case) -> tuple[Control, ...]:
 
 
 def _absorber_controls(case: Case) -> tuple[Control, ...]:
+    if not case.absorbers:
+        return ()
     law = case.absorbers[0].law
     place = (_position_control(),) if isinstance(case.pipe, Tube) else ()
     if isinstance(law, CubicLaw):
@@ -237,7 +261,6 @@ def _pipe_controls(case: Case) -> tuple[Control, ...]:
     return ()  # the modes of a table belong together
 
 
-DETUNING = "detuning"
 _SAME = 1e-12  # relative difference of two numbers that are the same but for rounding
 _LONGEST = Label().longest  # a title
 _CHANGED = re.compile(r"\s*\(changed: ([^()]*)\)$")
@@ -251,15 +274,20 @@ class Reading:
     ----------
     case : Case
         The case with every value that could be read; its title names those that differ from what was opened.
-    detuning : float
-        Where the motion is looked at [rad/s].
+    at : float
+        Where on the axis of the response the motion is looked at: detuning [rad/s], or wind speed [m/s].
     problems : dict
         By control: the message beside its field; empty if all is well.
     """
 
     case: Case
-    detuning: float
+    at: float
     problems: dict[str, str]
+
+    @property
+    def axis(self) -> Axis:
+        """What the response is drawn over."""
+        return Axis(self.case)
 
 
 def changed_title(title: str, names: Iterable[str]) -> str:
@@ -292,35 +320,32 @@ def reading(base: Case, texts: Mapping[str, Any]) -> Reading:
             changed.append(control.name)
     if changed:
         case = case.with_name(base.name, changed_title(base.title, changed))
-    detuning = math.nan
+    axis, at = Axis(case), math.nan
     try:
-        number = read_number(str(texts.get(DETUNING, "")).strip(), "rad/s", DETUNING)
-        lo, hi = detuning_window(case)
-        detuning = check_number(DETUNING, number, at_least=lo, at_most=hi, unit="rad/s")
+        number = read_number(str(texts.get(axis.name, "")).strip(), axis.unit, axis.name)
+        lo, hi = axis.ends
+        at = check_number(axis.name, number, at_least=lo, at_most=hi, unit=axis.unit)
     except ParameterError as error:
-        problems[DETUNING] = str(error)
-    return Reading(case, detuning, problems)
+        problems[axis.name] = str(error)
+    return Reading(case, at, problems)
 
 
-def detuning_span(case: Case) -> Span:
-    """Range of the detuning: the window of the analysis."""
-    return Span(*detuning_window(case), False)
-
-
-def field_texts(case: Case, detuning: float) -> dict[str, str]:
+def field_texts(case: Case, at: float) -> dict[str, str]:
     """Texts of all fields."""
-    return {control.name: shown(control.value(case)) for control in controls_of(case)} | {DETUNING: shown(detuning)}
+    return {control.name: shown(control.value(case)) for control in controls_of(case)} | {Axis(case).name: shown(at)}
 
 
 def spans(case: Case) -> dict[str, Span]:
     """Ranges of all sliders."""
-    return {control.name: control.span(case) for control in controls_of(case)} | {DETUNING: detuning_span(case)}
+    axis = Axis(case)
+    return {control.name: control.span(case) for control in controls_of(case)} | {axis.name: Span(*axis.shown, False)}
 
 
 _HINTS = {
-    "wind.speed": "sets the lift; the dotted line is where it sheds vortices",
+    "wind.speed": "of the case: the dotted line",
     "pipe.frequency": "or text with a unit, such as 0.78 Hz",
     DETUNING: "where the motion is looked at",
+    PLACE: "where the motion is looked at, with the lift of this wind",
 }
 _GREEK = {"omega": "ω", "zeta": "ζ"}
 
@@ -330,11 +355,11 @@ def shown_symbol(control: Control) -> str:
     return _GREEK.get(control.symbol, control.symbol)
 
 
-def field_facts(case: Case, detuning: float) -> list[dict[str, Any]]:
+def field_facts(case: Case, at: float) -> list[dict[str, Any]]:
     """What the script of the page must know to build the fields and sliders, and to turn positions into numbers."""
-    texts, ranges = field_texts(case, detuning), spans(case)
+    texts, ranges, axis = field_texts(case, at), spans(case), Axis(case)
     head = {control.name: (control.title, shown_symbol(control), control.unit) for control in controls_of(case)}
-    head[DETUNING] = ("Detuning", "σ", "rad/s")
+    head[axis.name] = ("Wind looked at", "U", axis.unit) if axis.over_wind else ("Detuning", "σ", axis.unit)
     return [
         {
             "name": name, "key": html_key(name), "title": title, "symbol": symbol,

@@ -19,13 +19,17 @@ MOST_POINTS = 1000
 def curve_lines(
     curve: ResponseCurve, kinds: Iterable[tuple[bool, bool, bool]] = EXACT_KINDS
 ) -> list[dict[str, Floats]]:
-    """Lines of a response curve, one entry for every kind: "detuning" and the quantities, NaN in the gaps."""
+    """Lines of a response curve, one entry for every kind: "x", "hz" and the quantities, NaN in the gaps.
+
+    "x" is the wind speed [m/s] where every wind has its own lift, else the detuning [rad/s]; "hz" the frequency [Hz].
+    """
     parts: dict[tuple[bool, bool, bool], list[slice]] = {key: [] for key in kinds}
     for part, stable in stretches(curve.stable, curve.piece, curve.branch):
         branch = curve.branch[part.start]
         asymmetric = curve.asymmetric[branch]
         parts[(curve.detached[branch] and not asymmetric, asymmetric, stable)].append(part)
-    columns = {"detuning": curve.detuning, **{name: getattr(curve, name) for name in QUANTITIES}}
+    x = curve.detuning if curve.wind_speed is None else curve.wind_speed
+    columns = {"x": x, "hz": curve.frequency / (2 * np.pi), **{name: getattr(curve, name) for name in QUANTITIES}}
     return [{name: _joined(values, found) for name, values in columns.items()} for found in parts.values()]
 
 
@@ -55,7 +59,8 @@ def special_points(points: Iterable[SpecialPoint]) -> list[dict[str, Any]]:
             {
                 "label": f"{short}{count[short]}",
                 "kind": point.kind,
-                "detuning": point.detuning,
+                "x": point.detuning if point.wind_speed is None else point.wind_speed,
+                "hz": point.frequency / (2 * math.pi),
                 "pipe_peak": point.pipe_peak,
                 "relative_peak": point.relative_peak,
                 "located": point.status == "located",

@@ -13,51 +13,55 @@ from frahm.response import ResponseCurve
 from frahm.web.drawing import curve_lines, heights, numbers, special_points
 from frahm.web.live import ManifoldLines, manifold_lines, responses_at, slow_curve, stability_map
 from frahm.web.looks import MARK, QUANTITIES, SLOW_KINDS, SYMBOLS, kind_look
-from frahm.web.scope import detuning_window
+from frahm.web.scope import Axis
 from frahm.web.tuned import LinearResponse
 
 Line = dict[str, Any]
 _TITLES = {"kappa": "cubic stiffness κ [1/(m² s²)]", "xi2": "damping ξ₂ [1/s]"}
 
 
-def line(look: str, row: int, x: Any, y: Any, **more: Any) -> Line:
-    """A line of the response figure; row 0 is the pipe, row 1 the absorber."""
-    return {"look": look, "row": row, "x": numbers(x), "y": numbers(y), "more": more}
+def line(look: str, row: int, x: Any, y: Any, hz: Any = (), **more: Any) -> Line:
+    """A line of the response figure; row 0 is the pipe, row 1 the absorber; `hz` is said when pointed at."""
+    return {"look": look, "row": row, "x": numbers(x), "y": numbers(y), "hz": numbers(hz), "more": more}
 
 
 def kind_lines(
-    method: str, kinds: Iterable[tuple[bool, bool, bool]], drawn: Iterable[Mapping[str, Floats]]
+    method: str, kinds: Iterable[tuple[bool, bool, bool]], drawn: Iterable[Mapping[str, Floats]], over_wind: bool
 ) -> list[Line]:
     """Lines of a curve in both rows, those without a point left out."""
     return [
-        line(kind_look(method, key), row, lines["detuning"], lines[name])
+        line(kind_look(method, key), row, lines["x"], lines[name], lines["hz"] if over_wind else ())
         for key, lines in zip(kinds, drawn, strict=True)
-        if len(lines["detuning"])
+        if len(lines["x"])
         for row, name in enumerate(QUANTITIES)
     ]
 
 
-def special_lines(points: list[dict[str, Any]]) -> list[Line]:
-    """Special points with their labels, in both rows."""
+def special_lines(points: list[dict[str, Any]], middle: float) -> list[Line]:
+    """Special points with their labels, in both rows; the labels point away from the middle."""
     if not points:
         return []
     upward = ["bottom" if point["kind"] == "saddle-node" else "top" for point in points]
-    sideward = ["right" if point["detuning"] > 0 else "left" for point in points]
+    sideward = ["right" if point["x"] > middle else "left" for point in points]
     more = {
         "text": [point["label"] + ("" if point["located"] else "?") for point in points],
         "textposition": [f"{height} {side}" for height, side in zip(upward, sideward, strict=True)],
         "marker": MARK | {"symbol": [SYMBOLS[point["kind"]] for point in points]},
     }
-    x = [point["detuning"] for point in points]
-    return [line("special", row, x, [point[name] for point in points], **more) for row, name in enumerate(QUANTITIES)]
+    x, hz = ([point[name] for point in points] for name in ("x", "hz"))
+    return [
+        line("special", row, x, [point[name] for point in points], hz, **more) for row, name in enumerate(QUANTITIES)
+    ]
 
 
 def curve_part(method: str, kinds: tuple[tuple[bool, bool, bool], ...], curve: ResponseCurve) -> dict[str, Any]:
     """A response curve: its lines, its special points, and how high the axes must reach [m]."""
-    tops = heights(curve)
+    tops, over_wind = heights(curve), curve.wind_speed is not None
+    x = curve.detuning if curve.wind_speed is None else curve.wind_speed
+    middle = 0.5 * float(np.min(x) + np.max(x)) if over_wind and x.size else 0.0
     return {
-        "lines": kind_lines(method, kinds, curve_lines(curve, kinds)),
-        "points": special_lines(special_points(curve.special_points)),
+        "lines": kind_lines(method, kinds, curve_lines(curve, kinds), over_wind),
+        "points": special_lines(special_points(curve.special_points), middle),
         "tops": [1.15 * tops[name] or 1.0 for name in QUANTITIES],
     }
 
@@ -75,7 +79,8 @@ def slow_part(case: Case, detuning: float) -> tuple[dict[str, Any], ResponseCurv
 def linear_lines(look: str, found: LinearResponse) -> list[Line]:
     """Response in closed form; without an absorber there is only the pipe."""
     rows = [values for values in (found.pipe, found.relative) if values.size]
-    return [line(look, row, found.detuning, values) for row, values in enumerate(rows)]
+    hz = () if found.wind_speed is None else found.frequency / (2 * np.pi)
+    return [line(look, row, found.x, values, hz) for row, values in enumerate(rows)]
 
 
 def attractor_lines(found: dict[str, Any]) -> list[Line]:
@@ -83,7 +88,7 @@ def attractor_lines(found: dict[str, Any]) -> list[Line]:
     settled = [entry for entry in found["attractors"] if entry["pipe_peak"] is not None]
     if not settled:
         return []
-    x, text = [found["detuning"]] * len(settled), [entry["kind"] for entry in settled]
+    x, text = [found["at"]] * len(settled), [entry["kind"] for entry in settled]
     return [
         line("attractors", row, x, [np.nan if entry[name] is None else entry[name] for entry in settled], text=text)
         for row, name in enumerate(QUANTITIES)
@@ -110,5 +115,5 @@ def map_part(case: Case, plane: str, span: tuple[float, float]) -> dict[str, Any
     return {
         "x": numbers(found.detuning), "y": numbers(found.parameter), "z": found.classes.tolist(),
         "title": _TITLES[plane], "range": [float(np.log10(end)) for end in span],
-        "window": list(detuning_window(case)),
+        "window": list(Axis(case).ends),
     }  # fmt: skip

@@ -13,9 +13,10 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.case import Case, load_case
-from frahm.errors import Outcome
+from frahm.errors import Outcome, ParameterError
 from frahm.harmonic_balance import PeriodicResponse
-from frahm.web.scope import detuning_window
+from frahm.web.deciding import decision
+from frahm.web.scope import Axis, range_of
 
 Progress = Callable[[str, int, int], None]
 
@@ -27,7 +28,7 @@ _SLIDES = 8  # a period: places of the sliding amplitude
 
 
 def exact_response(case: Case, progress: Progress) -> dict[str, Any]:
-    """Exact response curve by harmonic balance over the window of the case."""
+    """Exact response curve by harmonic balance over the range of operation of the case."""
     from frahm.harmonic_balance import is_linear
     from frahm.response import frequency_response
     from frahm.systems import build_system
@@ -35,12 +36,12 @@ def exact_response(case: Case, progress: Progress) -> dict[str, Any]:
     from frahm.web.looks import EXACT_KINDS
 
     harmonics = case.analysis.harmonics
-    curve = frequency_response(case, detuning=detuning_window(case), harmonics=harmonics)
+    curve = frequency_response(case, harmonics=harmonics)
     stable, at = curve.largest(stable_only=True)
     return {
         "part": curve_part("exact", EXACT_KINDS, curve),
         "largest": curve.largest()[0],
-        "largest_stable": None if np.isnan(stable) else [stable, at - case.pipe.frequency],
+        "largest_stable": None if np.isnan(stable) else [stable, float(_place(case, at))],
         "branches": len(curve.branches),
         "detached": sum(branch.detached for branch in curve.branches),
         "linear": is_linear(build_system(case)),
@@ -48,27 +49,33 @@ def exact_response(case: Case, progress: Progress) -> dict[str, Any]:
     }
 
 
+def _place(case: Case, frequency: float) -> float:
+    """Where on the axis of the response a frequency is."""
+    within = range_of(case)
+    return float(within.speed(frequency)) if within.over_wind else frequency - within.reference
+
+
 def exact_table(case: Case, progress: Progress) -> dict[str, Any]:
     """The exact response curve as CSV text."""
     from frahm.exchange import csv_text
     from frahm.response import frequency_response
 
-    curve = frequency_response(case, detuning=detuning_window(case), harmonics=case.analysis.harmonics)
+    curve = frequency_response(case, harmonics=case.analysis.harmonics)
     return {"csv": csv_text(curve.to_dataset())}
 
 
 def motion(
-    case: Case, progress: Progress, *, detuning: float, near: tuple[float | None, float | None] | None = None
+    case: Case, progress: Progress, *, at: float, near: tuple[float | None, float | None] | None = None
 ) -> dict[str, Any]:
-    """Motion of the exact equations at one detuning, as a figure.
+    """Motion of the exact equations at one place of the axis of the response, as a figure.
 
     Parameters
     ----------
     case : Case
     progress : callable
         Told what is done.
-    detuning : float
-        [rad/s].
+    at : float
+        Detuning [rad/s], or the wind speed [m/s] where every wind has its own lift.
     near : tuple of float, optional
         Pipe and relative peak [m] of the periodic response to start on, None for one that does not matter; from rest
         if not given.
@@ -79,6 +86,7 @@ def motion(
     from frahm.time_integration import integrate
 
     start, about = None, "from rest"
+    (case, detuning), hanging = Axis(case).driven(at), bool(case.absorbers)
     if near is not None:
         responses = periodic_responses(case, detuning=detuning, harmonics=case.analysis.harmonics)
         if responses:
@@ -99,9 +107,9 @@ def motion(
         "figure": json.loads(figure.to_json()),
         "kind": view.kind,
         "about": about,
-        "detuning": detuning,
+        "at": at,
         "pipe_peak": peaks.pipe,
-        "relative_peak": peaks.relative,
+        "relative_peak": peaks.relative if hanging else None,
         "outcome": history.outcome.value if history.outcome is not Outcome.DONE else "",
         "slow": [values.tolist() for values in view.slow] if view.slow else None,
         "history": _table(history),
@@ -162,11 +170,12 @@ def _table(history: Any) -> str:
     return time_history_text(history)
 
 
-def attractors(case: Case, progress: Progress, *, detuning: float) -> dict[str, Any]:
-    """Every long-term motion at one detuning, with the share of initial states that leads to it."""
+def attractors(case: Case, progress: Progress, *, at: float) -> dict[str, Any]:
+    """Every long-term motion at one place of the axis, with the share of initial states that leads to it."""
     from frahm.attractors import find_attractors
 
     settings = case.analysis
+    case, detuning = Axis(case).driven(at)
     found = find_attractors(case, detuning=detuning, samples=settings.samples, seed=settings.seed)
     rows = [
         {
@@ -180,7 +189,7 @@ def attractors(case: Case, progress: Progress, *, detuning: float) -> dict[str, 
         }
         for one in found
     ]
-    return {"detuning": detuning, "samples": found.samples, "seed": found.seed, "attractors": rows}
+    return {"at": at, "samples": found.samples, "seed": found.seed, "attractors": rows}
 
 
 def _finite(value: float) -> float | None:
@@ -199,10 +208,26 @@ def report(case: Case, progress: Progress) -> dict[str, Any]:
     return {"html": text, "verified": analysis.verified, "verdict": analysis.verdict}
 
 
+def first_sink(case: Case, progress: Progress) -> dict[str, Any]:
+    """A cubic sink of 2 % of the pipe's mass, the best by one harmonic; the search of `frahm design` starts there."""
+    from frahm.design.absorber import with_design
+    from frahm.design.problem import Problem
+    from frahm.design.search import Corrections
+    from frahm.design.settings import settings_for
+    from frahm.web.tuned import MASS_RATIO
+
+    problem = Problem.of(case, settings_for(case, MASS_RATIO))
+    tier = problem.tier("sink")
+    best = tier.best(problem.limits, Corrections())
+    if best is None:
+        raise ParameterError("absorbers", "none", f"a sink that keeps {tier.binding(problem.limits)}")
+    return {"case": with_design(case, tier.space.absorber(best[0]), "sink").to_dict()}
+
+
 def warm_up(case: Case, progress: Progress) -> dict[str, Any]:
     """Load what the quick jobs need, so that the first one does not have to."""
     exact_response(case, progress)
-    motion(case, progress, detuning=sum(detuning_window(case)) / 2)
+    motion(case, progress, at=Axis(case).start)
     return {}
 
 
@@ -211,6 +236,8 @@ JOBS: dict[str, Callable[..., dict[str, Any]]] = {
     "exact table": exact_table,
     "motion": motion,
     "attractors": attractors,
+    "decision": decision,
+    "first sink": first_sink,
     "report": report,
     "warm-up": warm_up,
 }

@@ -11,9 +11,10 @@ from frahm.case import Case
 from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK
 from frahm.web import keys
 from frahm.web.controls import field_facts
+from frahm.web.deciding import DEVICES
 from frahm.web.looks import HEIGHTS
 from frahm.web.presets import PRESETS
-from frahm.web.scope import PLANES, has_slow_flow, start_detuning
+from frahm.web.scope import PLANES, Axis, has_slow_flow
 
 
 def page(case: Case) -> html.Div:
@@ -24,7 +25,7 @@ def page(case: Case) -> html.Div:
             *_stores(case),
             html.Div(id="lost", className="lost", role="alert", hidden=True),
             _header(case),
-            html.Main([_response_part(), _parameters(), _below(slow), _on_demand()]),
+            html.Main([_decision(), _response_part(), _parameters(), _below(slow), _on_demand()]),
         ],
         className="page",
     )
@@ -34,7 +35,7 @@ def _stores(case: Case) -> list[Any]:
     return [
         dcc.Store(id="session", data=uuid.uuid4().hex),
         dcc.Store(id="case", data=case.to_dict()),
-        dcc.Store(id="fields", data=field_facts(case, start_detuning(case))),
+        dcc.Store(id="fields", data=field_facts(case, Axis(case).start)),
         dcc.Store(id="texts"),
         dcc.Store(id="values"),
         dcc.Store(id="plane", data="kappa"),
@@ -82,9 +83,31 @@ def _parameters() -> html.Section:
     return _section(
         "parameters", "Parameters", "parameters",
         html.Div(id="parameters", className="fields"),
-        html.Button("Detuning of the wind", id="to-wind", n_clicks=0),
+        html.Button("Look at the wind of the case", id="to-wind", n_clicks=0),
+        html.Button("Add a sink of 2 % of the mass", id="add-sink", n_clicks=0, className="bare-only"),
         html.Button("Compare with a tuned mass damper", id="tuned", n_clicks=0, className="toggle", **off),
     )  # fmt: skip
+
+
+_ROWS = {"bare": "without absorber", "this": "this device", "tuned": "tuned damper of equal mass"}
+_COLUMNS = {"peak": "worst motion", "ratio": "A/D", "place": "where", "used": "of the limits", "verdict": "verdict"}
+
+
+def _decision() -> html.Section:
+    """What the member comes to: filled in by the script when the sliders rest."""
+    head = html.Tr([html.Th("device", scope="col"), *(html.Th(title, scope="col") for title in _COLUMNS.values())])
+    rows = [
+        html.Tr(
+            [html.Th(_ROWS[device], scope="row"), *(html.Td(id=f"decision-{device}-{name}") for name in _COLUMNS)],
+            id=f"decision-{device}", className=f"device-{device}",
+        )
+        for device in DEVICES
+    ]  # fmt: skip
+    named: dict[str, Any] = {"tabIndex": "0", "role": "region", "aria-label": "worst motion of every device"}
+    table = html.Div(html.Table([html.Thead(head), html.Tbody(rows)]), className="table", **named)
+    return _section(
+        "decision", "Does it hold?", "decision", table, html.P(id="decision-status", className="status", role="status")
+    )
 
 
 def _response_part() -> html.Section:

@@ -12,7 +12,7 @@ from frahm.case import Case
 from frahm.response import ResponseCurve, frequency_response, slow_flow_values
 from frahm.slow_flow import Folds, slow_flow_of, slow_manifold
 from frahm.systems import build_system
-from frahm.web.scope import detuning_window
+from frahm.web.scope import Axis
 
 CURVE_POINTS = 400
 _MANIFOLD_POINTS = 400
@@ -25,7 +25,7 @@ _CODES = {(1, 1): 0, (3, 2): 1, (2, 2): 1, (3, 1): 2, (2, 1): 2, (3, 0): 3, (2, 
 def slow_curve(case: Case) -> ResponseCurve:
     """Every response of the slow flow over the window of the case."""
     return frequency_response(
-        case, detuning=detuning_window(case), method="slow-flow", form=case.analysis.form, points=CURVE_POINTS
+        case, detuning=Axis(case).ends, method="slow-flow", form=case.analysis.form, points=CURVE_POINTS
     )
 
 
@@ -84,7 +84,7 @@ def stability_map(case: Case, plane: str, span: tuple[float, float]) -> Stabilit
     span : tuple of float
         Its range; the rows are equal factors apart.
     """
-    sigma = np.linspace(*detuning_window(case), _MAP_COLUMNS)
+    sigma = np.linspace(*Axis(case).ends, _MAP_COLUMNS)
     rows = np.geomspace(*span, _MAP_ROWS)
     given: dict[str, Any] = {plane: rows[:, None]}
     _, _, stability = slow_flow_values(case, detuning=sigma[None, :], form=case.analysis.form, **given)

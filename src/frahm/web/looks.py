@@ -61,7 +61,9 @@ SYMBOLS = {
 BARE_LINE = "without absorber"
 TUNED_LINE = "tuned mass damper of the same mass"
 MARK = {"color": INK, "size": 8}  # of a special point
-_HOVER = "σ %{x:.4f} rad/s<br>%{y:.4g} m"
+WIND_LABEL = "wind speed U [m/s]"
+_AT_DETUNING, _AT_WIND = "σ %{x:.4f} rad/s", "U %{x:.4g} m/s, sheds at %{customdata:.4g} Hz"
+_HOVER = _AT_DETUNING + "<br>%{y:.4g} m"
 
 
 def kind_look(method: str, key: tuple[bool, bool, bool]) -> str:
@@ -162,5 +164,6 @@ def figures() -> dict[str, Any]:
                 xaxis=_axis(DETUNING_LABEL), yaxis=_axis(type="log", exponentformat="power", dtick=1),
             ),
         },
-        "beside": {"color": SINK, "wind": BARE},
+        "beside": {"color": SINK, "wind": BARE, "band": "#eef3f7"},
+        "axes": {"detuning": [DETUNING_LABEL, _AT_DETUNING], "place": [WIND_LABEL, _AT_WIND]},
     }  # fmt: skip

@@ -14,7 +14,7 @@ from frahm.case import Case
 from frahm.errors import ParameterError
 from frahm.web.front import Front
 from frahm.web.guard import ADDRESS, LocalOnly, WsgiApp
-from frahm.web.scope import check_shown, start_detuning
+from frahm.web.scope import Axis
 from frahm.web.sessions import Sessions
 
 DEFAULT_PORT = 8050
@@ -44,9 +44,8 @@ def page_server(case: Case, port: int) -> Iterator[BaseWSGIServer]:
     Raises
     ------
     ParameterError
-        If the port is taken, or the page cannot show the case.
+        If the port is taken.
     """
-    check_shown(case)
     sessions, failures = Sessions(), []
 
     def failed(error: BaseException) -> None:
@@ -80,7 +79,7 @@ def _warm_up(case: Case) -> None:
     with contextlib.suppress(Exception):
         from frahm.web.answers import warm_up
 
-        warm_up(case, start_detuning(case))
+        warm_up(case, Axis(case).start)
 
 
 def _free_port(port: int) -> int:

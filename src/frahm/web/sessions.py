@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import subprocess
 import sys
 import threading
 import time
+import weakref
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,6 +19,10 @@ SILENCE = 150.0
 _LOOK_AROUND = 2.0
 _PATIENCE = 3.0
 MOST_SESSIONS = 64
+_DECIDING = 120.0  # [s] a decision may take: nobody asked for it, and others wait for its process
+_COMMAND = (sys.executable, "-m", "frahm.web.worker")
+_CANCELLED, _REPLACED, _CLOSED = "Cancelled.", "Replaced by a newer one.", "The page was closed."
+ENDED = (_CANCELLED, _REPLACED, _CLOSED)  # why a job has no result, where nothing went wrong
 
 
 @dataclass
@@ -41,7 +48,7 @@ class Job:
 
     name: str
     case: dict[str, Any]
-    progress: tuple[str, int, int] = ("starting", 0, 0)
+    progress: tuple[str, int, int] = ("waiting for its turn", 0, 0)
     result: dict[str, Any] | None = None
     problem: str = ""
     done: threading.Event = field(default_factory=threading.Event)
@@ -58,52 +65,126 @@ class Job:
             self.done.set()
             return True
 
+    def given(self, process: subprocess.Popen[str]) -> bool:
+        """Give the job to a process, unless it has ended already; return whether it had not."""
+        with self._ending:
+            if self.done.is_set():
+                return False
+            self.process = process
+            return True
+
     @property
     def seconds(self) -> float:
         """Time since the start [s]."""
         return time.monotonic() - self.started
 
 
+@dataclass(eq=False)
+class Turn:
+    """A place in the queue.
+
+    Attributes
+    ----------
+    visitor : object
+        Who asks.
+    long : bool
+        Whether it may take its time: such jobs never hold all processes.
+    number : int
+        In order of asking.
+    """
+
+    visitor: object
+    long: bool
+    number: int
+
+
 class Processes:
-    """Processes that wait for a job: one that is free is taken before another one is started.
+    """A few processes for the jobs of all visitors: whoever was served longest ago is next.
 
     Parameters
     ----------
-    spare : int
-        Most that are kept without work.
+    most : int, optional
+        Most at work at a time; by default one a core, and at least two, so that a long job leaves one to the others.
+    rest : float
+        Time [s] after which one that has nothing to do ends, to give its memory back.
+    command : sequence of str
+        What starts one.
     """
 
-    def __init__(self, spare: int = 2) -> None:
-        self._spare = spare
-        self._idle: list[subprocess.Popen[str]] = []
-        self._lock = threading.Lock()
+    def __init__(self, most: int | None = None, rest: float = 60.0, command: Sequence[str] = _COMMAND) -> None:
+        self.most = most or max(2, os.cpu_count() or 1)
+        self._rest, self._command = rest, command
+        self._idle: list[tuple[subprocess.Popen[str], float]] = []
+        self._waiting: list[Turn] = []
+        self._busy: list[Turn] = []
+        self._served: weakref.WeakKeyDictionary[Any, int] = weakref.WeakKeyDictionary()
+        self._count = 0
+        self._changed = threading.Condition()
         self._closed = False
 
-    def take(self) -> subprocess.Popen[str]:
-        """A process without work."""
-        with self._lock:
+    def take(self, visitor: object, long: bool, unwanted: threading.Event) -> tuple[subprocess.Popen[str], Turn] | None:
+        """A process without work, as soon as it is this visitor's turn; None if it is unwanted before that."""
+        with self._changed:
+            self._count += 1
+            turn = Turn(visitor, long, self._count)
+            self._waiting.append(turn)
+            self._changed.wait_for(lambda: unwanted.is_set() or self._closed or self._next() is turn)
+            self._waiting.remove(turn)
+            self._changed.notify_all()
+            if unwanted.is_set() or self._closed:
+                return None
+            self._busy.append(turn)
+            self._served[visitor] = self._count
             while self._idle:
-                process = self._idle.pop()
+                process, _ = self._idle.pop()
                 if process.poll() is None:
-                    return process
-        return subprocess.Popen(
-            [sys.executable, "-m", "frahm.web.worker"],
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8",
-        )  # fmt: skip
+                    return process, turn
+        return self._started(), turn
 
-    def give_back(self, process: subprocess.Popen[str]) -> None:
-        """The process has done its work: keep it for the next, or end it if there are enough."""
-        with self._lock:
-            if not self._closed and len(self._idle) < self._spare and process.poll() is None:
-                self._idle.append(process)
-                return
-        end_process(process)
+    def _next(self) -> Turn | None:
+        """Who is next; nobody while all processes are at work."""
+        if len(self._busy) >= self.most:
+            return None
+        full = sum(turn.long for turn in self._busy) >= max(1, self.most - 1)
+        able = [turn for turn in self._waiting if not (turn.long and full)]
+        return min(able, key=lambda turn: (self._served.get(turn.visitor, 0), turn.number), default=None)
+
+    def _started(self) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, encoding="utf-8"
+        )
+
+    def look(self) -> None:
+        """Look at the queue anew: a job has become unwanted."""
+        with self._changed:
+            self._changed.notify_all()
+
+    def give_back(self, process: subprocess.Popen[str], turn: Turn) -> None:
+        """The process has done its work, or has ended: it is kept for the next, and the next may begin."""
+        with self._changed:
+            self._busy.remove(turn)
+            keep = not self._closed and process.poll() is None
+            if keep:
+                self._idle.append((process, time.monotonic()))
+            self._changed.notify_all()
+        if not keep:
+            end_process(process)
+
+    def end_idle(self) -> None:
+        """End those that have had nothing to do for a while."""
+        now = time.monotonic()
+        with self._changed:
+            ended = [process for process, since in self._idle if now - since >= self._rest]
+            self._idle = [(process, since) for process, since in self._idle if now - since < self._rest]
+        for process in ended:
+            end_process(process)
 
     def close(self) -> None:
         """End all that wait, and whatever is given back from now on."""
-        with self._lock:
+        with self._changed:
             self._closed, idle, self._idle = True, self._idle, []
-        for process in idle:
+            self._changed.notify_all()
+        for process, _ in idle:
             end_process(process)
 
 
@@ -123,10 +204,17 @@ class Worker:
     ----------
     processes : Processes
         Where they come from.
+    visitor : object
+        Whose page it is.
+    long : bool
+        Whether its jobs may take their time.
+    most : float, optional
+        Time [s] after which a job that is waited for is ended.
     """
 
-    def __init__(self, processes: Processes) -> None:
-        self._processes = processes
+    def __init__(self, processes: Processes, visitor: object, long: bool = False, most: float | None = None) -> None:
+        self._most = most
+        self._processes, self._visitor, self._long = processes, visitor, long
         self._lock = threading.Lock()
         self._asked: dict[str, int] = {}
         self._turn = threading.Lock()
@@ -136,17 +224,13 @@ class Worker:
     def start(self, name: str, case: dict[str, Any], **arguments: Any) -> Job:
         """Start a job; one that is still running is cancelled."""
         with self._lock:
-            self._end_job("Replaced by a newer one.")
+            self._end_job(_REPLACED)
             job = self.job = Job(name, case)
             if self._closed:
-                job.end("The page was closed.")
+                job.end(_CLOSED)
                 return job
-            job.process = self._processes.take()
-            threading.Thread(target=self._follow, args=(job,), daemon=True).start()
-            with contextlib.suppress(OSError):  # it has died: whoever follows it finds out
-                assert job.process.stdin is not None
-                job.process.stdin.write(json.dumps({"name": name, "case": case, "arguments": arguments}) + "\n")
-                job.process.stdin.flush()
+            text = json.dumps({"name": name, "case": case, "arguments": arguments}) + "\n"
+            threading.Thread(target=self._do, args=(job, text), daemon=True).start()
         return job
 
     def ask(self, name: str, case: dict[str, Any], **arguments: Any) -> Job | None:
@@ -159,29 +243,49 @@ class Worker:
             if mine != self._asked[name]:
                 return None
             job = self.start(name, case, **arguments)
-            job.done.wait()
+            if not job.done.wait(self._most) and job is self.job:
+                with self._lock:
+                    self._end_job(f"It took more than {self._most:g} s; the full report has no such limit.")
         return job if mine == self._asked[name] else None
 
     def cancel(self) -> None:
         """End the job that is running, at once."""
         with self._lock:
-            self._end_job("Cancelled.")
+            self._end_job(_CANCELLED)
 
     def close(self) -> None:
         """End the job that is running, and take no more."""
         with self._lock:
             self._closed = True
-            self._end_job("The page was closed.")
+            self._end_job(_CLOSED)
 
     def _end_job(self, reason: str) -> None:
-        if self.job is not None and self.job.end(reason) and self.job.process is not None:
+        if self.job is None or not self.job.end(reason):
+            return
+        if self.job.process is not None:
             end_process(self.job.process)
+        self._processes.look()
 
-    def _follow(self, job: Job) -> None:
+    def _do(self, job: Job, text: str) -> None:
+        """Wait for a process, and give it the job."""
+        taken = self._processes.take(self._visitor, self._long, job.done)
+        if taken is None:
+            job.end(_CLOSED)
+            return
+        process, turn = taken
+        try:
+            if job.given(process):
+                self._follow(job, process, text)
+        finally:
+            self._processes.give_back(process, turn)
+
+    def _follow(self, job: Job, process: subprocess.Popen[str], text: str) -> None:
         """Hear what the process says about a job until it is done."""
-        process = job.process
-        assert process is not None
+        assert process.stdin is not None
         assert process.stdout is not None
+        with contextlib.suppress(OSError, ValueError):  # it has died: reading from it tells
+            process.stdin.write(text)
+            process.stdin.flush()
         try:
             while True:
                 line = process.stdout.readline()
@@ -196,8 +300,11 @@ class Worker:
             if job.end("The process that computed this has ended unexpectedly."):
                 end_process(process)
             return
-        if job.end(said.get("problem", ""), said.get("result")):
-            self._processes.give_back(process)
+        job.end(said.get("problem", ""), said.get("result"))
+
+
+class _Visitor:
+    """Nobody but oneself."""
 
 
 @dataclass
@@ -206,8 +313,8 @@ class Session:
 
     Attributes
     ----------
-    quick, long : Worker
-        For jobs of a moment, and for those that take their time.
+    quick, deciding, long : Worker
+        For jobs of a moment, for the decision that follows them, and for what is asked for and takes its time.
     heard : float
         When it was last heard of [s].
     newest : int
@@ -217,14 +324,23 @@ class Session:
     """
 
     quick: Worker
+    deciding: Worker
     long: Worker
     heard: float = field(default_factory=time.monotonic)
     newest: int = 0
     exact: str = ""
 
+    @classmethod
+    def of(cls, processes: Processes) -> Session:
+        """A session whose jobs share these processes with those of others."""
+        visitor = _Visitor()
+        deciding = Worker(processes, visitor, long=True, most=_DECIDING)
+        return cls(Worker(processes, visitor), deciding, Worker(processes, visitor, long=True))
+
     def close(self) -> None:
         """End its work."""
         self.quick.close()
+        self.deciding.close()
         self.long.close()
 
 
@@ -247,7 +363,7 @@ class Sessions:
                 threading.Thread(target=self._sessions.pop(oldest).close, daemon=True).start()
             session = self._sessions.get(name)
             if session is None:
-                session = self._sessions[name] = Session(Worker(self._processes), Worker(self._processes))
+                session = self._sessions[name] = Session.of(self._processes)
             session.heard = time.monotonic()
             return session
 
@@ -267,6 +383,7 @@ class Sessions:
 
     def _look_around(self) -> None:
         while not self._stop.wait(_LOOK_AROUND):
+            self._processes.end_idle()
             now = time.monotonic()
             for name in [key for key, session in list(self._sessions.items()) if now - session.heard > self._silence]:
                 self.close(name)

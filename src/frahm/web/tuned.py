@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,57 +10,103 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.case import Case
 from frahm.systems import build_system
-from frahm.web.scope import detuning_window
+from frahm.web.scope import range_of
 
-_POINTS = 401
+MASS_RATIO = 0.02  # of an absorber that is offered to a pipe without one
+_EVEN, _AROUND = 301, 61  # points over the range, and around every resonance
+_NARROWEST = 1e-9  # of the frequency: half width of a resonance without damping
 
 
 def tuned_case(case: Case) -> Case:
     """Case with its first absorber alone, as a tuned mass damper of the same mass in the same place.
 
-    It is tuned for equal peaks of the governing mode, whose mass is felt where the damper hangs.
+    It is tuned for equal peaks of the governing mode, whose mass is felt where the damper hangs; a pipe without
+    absorbers gets one of `MASS_RATIO` where it moves most.
     """
     from frahm.design.tuned import equal_peak  # half a second that the page can do without until it is asked for
 
-    old, pipe = case.absorbers[0], case.pipe
-    moves = float(pipe.modal.displacement(old.position)[0])
-    ratio, damping_ratio, _ = equal_peak(old.mass * moves**2 / pipe.mass)
+    pipe = case.pipe
+    mass, position = MASS_RATIO * pipe.mass, None
+    if case.absorbers:
+        mass, position = case.absorbers[0].mass, case.absorbers[0].position
+    moves = float(pipe.modal.displacement(position)[0])
+    ratio, damping_ratio, _ = equal_peak(mass * moves**2 / pipe.mass)
     omega = ratio * pipe.frequency
-    law = {"kind": "linear", "stiffness": old.mass * omega**2, "damping": 2 * damping_ratio * old.mass * omega}
-    damper = {"name": "tuned mass damper", "mass": old.mass, "law": law, "position": old.position}
-    return case.model_validate({**case.to_dict(), "absorbers": [damper]})
+    law = {"kind": "linear", "stiffness": mass * omega**2, "damping": 2 * damping_ratio * mass * omega}
+    damper = {"name": "tuned mass damper", "mass": mass, "law": law, "position": position}
+    return Case(**case.to_dict() | {"absorbers": [damper]})
 
 
 @dataclass(frozen=True)
 class LinearResponse:
-    """Amplitudes over the window [m]; `relative` is empty without an absorber."""
+    """Amplitudes over the range of operation.
 
+    Attributes
+    ----------
+    frequency, detuning : ndarray
+        Omega, sigma [rad/s].
+    wind_speed : ndarray or None
+        U [m/s] where every wind has its own lift.
+    pipe, relative : ndarray
+        [m]; `relative` is empty without an absorber.
+    """
+
+    frequency: Floats
     detuning: Floats
+    wind_speed: Floats | None
     pipe: Floats
     relative: Floats
+
+    @property
+    def x(self) -> Floats:
+        """What it is drawn over."""
+        return self.detuning if self.wind_speed is None else self.wind_speed
 
 
 def tuned_mass_damper_response(case: Case) -> LinearResponse:
     """Response of the pipe with a tuned mass damper of the same mass, in closed form."""
     from frahm.harmonic_balance.condensation import linear_part
+    from frahm.harmonic_balance.linear import linear_exponents
 
     system = build_system(tuned_case(case))
     damping, stiffness = linear_part(system)
-    detuning = np.linspace(*detuning_window(case), _POINTS)
-    W = (case.pipe.frequency + detuning)[:, None, None]
+    values = linear_exponents(system)
+    grid = _grid(case, ((value.imag, -value.real) for value in values[values.imag > 0]))
+    W = grid[:, None, None]
     dynamic = stiffness - W**2 * system.mass + 1j * W * damping
-    force = np.broadcast_to(system.forcing[:, None], (_POINTS, system.size, 1))
+    force = np.broadcast_to(system.forcing[:, None], (grid.size, system.size, 1))
     X = np.linalg.solve(dynamic, force)[..., 0]
-    return LinearResponse(detuning, np.abs(X @ system.output), np.abs(X @ system.elements[0].direction))
+    return _response(case, grid, np.abs(X @ system.output), np.abs(X @ system.elements[0].direction))
 
 
 def bare_response(case: Case) -> LinearResponse:
     """Response of the pipe without any absorber, mode by mode; NaN where it is infinite."""
     system = build_system(case.without_absorbers())
-    detuning = np.linspace(*detuning_window(case), _POINTS)
     mass, damping, stiffness = (np.diag(matrix) for matrix in (system.mass, system.damping, system.stiffness))
-    W = (case.pipe.frequency + detuning)[:, None]
+    grid = _grid(case, zip(np.sqrt(stiffness / mass), 0.5 * damping / mass, strict=True))
+    W = grid[:, None]
     dynamic = stiffness - W**2 * mass + 1j * W * damping
     finite = np.abs(dynamic) > 0
     X = np.where(finite, system.forcing / np.where(finite, dynamic, 1.0), np.nan)
-    return LinearResponse(detuning, np.abs(X @ system.output), np.empty(0))
+    return _response(case, grid, np.abs(X @ system.output), np.empty(0))
+
+
+def _grid(case: Case, resonances: Iterable[tuple[float, float]]) -> Floats:
+    """Frequencies [rad/s] true to resonances at omega with the decay delta: evenly along the circle that each draws."""
+    lo, hi = range_of(case).frequency
+    turns = np.tan(np.linspace(-0.5, 0.5, _AROUND + 2)[1:-1] * np.pi)
+    around = [omega + max(delta, _NARROWEST * omega) * turns for omega, delta in resonances]
+    grid = np.unique(np.concatenate([np.linspace(lo, hi, _EVEN), *around]))
+    return grid[(grid >= lo) & (grid <= hi)]
+
+
+def _response(case: Case, frequency: Floats, pipe: Floats, relative: Floats) -> LinearResponse:
+    """Amplitudes with the lift of the case, as every wind drives them."""
+    within = range_of(case)
+    detuning = frequency - within.reference
+    if not within.over_wind:
+        return LinearResponse(frequency, detuning, None, pipe, relative)
+    factors = np.array([within.lift_factor(float(W)) for W in frequency])
+    return LinearResponse(
+        frequency, detuning, within.speed(frequency), factors * pipe, factors[: relative.size] * relative
+    )

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.case import Case
+from frahm.loads import lock_in_band
 from frahm.web.controls import Control, controls_of, shown, shown_symbol
+from frahm.web.scope import Axis
 from frahm.web.sessions import Job
 
 if TYPE_CHECKING:  # loaded when the first curve is drawn, not before the page is shown
@@ -23,6 +27,23 @@ NO_SLOW_FLOW = (
     "The slow flow is of one mode with one cubic sink: for this case the exact response is drawn, each time the "
     "sliders rest; until then the curve of the last values stays, in a paler tint."
 )
+
+
+NO_ABSORBER = "The pipe carries no absorber: its response, in closed form, is all there is to draw."
+OVER_WIND = (
+    "Over the wind, each with its own lift: the slow flow knows one lift and is not drawn. The exact response is drawn "
+    "each time the sliders rest; until then the curve of the last values stays, in a paler tint."
+)
+
+
+NO_LIMITS = "The case gives no limits to hold the motion against: see its section limits."
+
+
+def no_slow_status(case: Case) -> str:
+    """Why the slow flow is not drawn."""
+    if not case.absorbers:
+        return NO_ABSORBER
+    return OVER_WIND if Axis(case).over_wind else NO_SLOW_FLOW
 
 
 def slow_status(curve: ResponseCurve) -> str:
@@ -41,7 +62,7 @@ def slow_status(curve: ResponseCurve) -> str:
     return "; ".join(words) + "." + _doubts(curve.unverified)
 
 
-def exact_status(found: dict[str, Any]) -> str:
+def exact_status(case: Case, found: dict[str, Any]) -> str:
     """What the exact response says, and what was not verified."""
     count = found["branches"]
     words = [f"Exact response: {count} {_plural('branch', count)}", f"largest response {_metres(found['largest'])}"]
@@ -49,7 +70,7 @@ def exact_status(found: dict[str, Any]) -> str:
         words.append("none is stable")
     else:
         stable, at = found["largest_stable"]
-        words.append(f"largest stable one {_metres(stable)} at σ = {at:.3g} rad/s")
+        words.append(f"largest stable one {_metres(stable)} at {_at(case, at)}")
     if found["detached"]:
         words.append(f"{found['detached']} detached")
     text = "; ".join(words) + "."
@@ -58,12 +79,19 @@ def exact_status(found: dict[str, Any]) -> str:
     return text + _doubts(found["unverified"])
 
 
-def wind_outside(detuning: float, low: float, high: float) -> str:
-    """Why the detuning [rad/s] is not set to that of the wind."""
+def wind_outside(axis: Axis) -> str:
+    """Why the wind of the case is not looked at."""
+    low, high = axis.shown
+    if axis.over_wind:
+        return f"The wind of the case, {axis.wind:.4g} m/s, is outside the range {low:g} ... {high:g} m/s."
     return (
-        f"The wind sheds at detuning {detuning:.3g} rad/s, outside the window {low:g} ... {high:g} rad/s: "
+        f"The wind sheds at detuning {axis.wind:.3g} rad/s, outside the window {low:g} ... {high:g} rad/s: "
         "the detuning stays as it is."
     )
+
+
+def _at(case: Case, at: float) -> str:
+    return f"{at:.4g} m/s" if Axis(case).over_wind else f"σ = {at:.3g} rad/s"
 
 
 def manifold_status(lines: ManifoldLines) -> str:
@@ -75,9 +103,10 @@ def manifold_status(lines: ManifoldLines) -> str:
 
 def motion_status(case: Case, found: dict[str, Any]) -> str:
     """What an integrated motion is, and the values it belongs to."""
+    sink = "" if found["relative_peak"] is None else f", the sink at {_metres(found['relative_peak'])}"
     return (
-        f"{_values(case, found['detuning'])}, {found['about']}: {found['kind']}; at the end the pipe peaks at "
-        f"{_metres(found['pipe_peak'])}, the sink at {_metres(found['relative_peak'])}. {found['outcome']}"
+        f"{_values(case, found['at'])}, {found['about']}: {found['kind']}; at the end the pipe peaks at "
+        f"{_metres(found['pipe_peak'])}{sink}. {found['outcome']}"
     ).strip()
 
 
@@ -85,7 +114,7 @@ def attractor_table(case: Case, found: dict[str, Any]) -> html.Div:
     """Attractors with their basin fractions, and the values they belong to."""
     from dash import html
 
-    about = f"{_values(case, found['detuning'])}; {found['samples']} starts, seed {found['seed']}:"
+    about = f"{_values(case, found['at'])}; {found['samples']} starts, seed {found['seed']}:"
     head = html.Tr([html.Th(text) for text in ("kind", "pipe [m]", "sink [m]", "share of starts (95 %)")])
     rows = [html.Tr(_attractor_cells(row)) for row in found["attractors"]]
     named: dict[str, Any] = {"tabIndex": "0", "role": "region", "aria-label": "attractors found"}
@@ -93,14 +122,17 @@ def attractor_table(case: Case, found: dict[str, Any]) -> html.Div:
     return html.Div([html.P(about, className="status"), table])
 
 
-def _values(case: Case, detuning: float) -> str:
-    """The detuning [rad/s] and every value of the fields, by which what is shown can be told from that of others."""
+def _values(case: Case, at: float) -> str:
+    """The place on the axis and every value of the fields, by which what is shown can be told from that of others."""
     values = [
         f"{shown_symbol(control)} = {shown(control.value(case))}{_unit(control)}"
         for control in controls_of(case)
         if control.name != "wind.speed"
     ]
-    return f"At σ = {detuning:.4g} rad/s, {', '.join(values)}, wind {shown(case.wind.speed)} m/s"
+    place = f"In a wind of {at:.4g} m/s" if Axis(case).over_wind else f"At σ = {at:.4g} rad/s"
+    return ", ".join(
+        [place, *values, f"wind {'of the case ' if Axis(case).over_wind else ''}{shown(case.wind.speed)} m/s"]
+    )
 
 
 def _unit(control: Control) -> str:
@@ -117,6 +149,48 @@ def _attractor_cells(row: dict[str, Any]) -> list[html.Td]:
     kind = "; ".join(word for word in (row["kind"], "from rest" if row["from_rest"] else "", row["outcome"]) if word)
     numbers = [_metres(row[name], unit="") for name in ("pipe_peak", "relative_peak")]
     return [html.Td(kind), *(html.Td(text, className="number") for text in (*numbers, share))]
+
+
+def decision_row(case: Case, device: str, found: dict[str, Any]) -> dict[str, str]:
+    """Cells of a row of the decision, in units people use, and the sentence that belongs to it."""
+    worst, judged = found["worst"], found["acceptance"]
+    if worst is None:
+        return no_decision("; ".join(found["unverified"]))
+    known = [row for row in judged["rows"] if not math.isnan(row["ratio"])]
+    most = max(known, key=lambda row: row["ratio"], default=None)
+    limits = (
+        "no limits given" if most is None else f"{readable.share(most['ratio'])} ({most['name'].replace('_', ' ')})"
+    )
+    doubt = f" Unverified: {_first(found['unverified'])}" if found["unverified"] else ""
+    speed = worst.get("wind_speed")
+    windy = speed is not None and math.isfinite(speed)
+    return {
+        "peak": readable.length(worst["pipe_peak"]),
+        "ratio": f"{worst['pipe_peak'] / case.pipe.diameter:.3g}",
+        "place": f"at {readable.speed(speed)}" if windy else f"at σ = {worst['detuning']:.3g} rad/s",
+        "used": limits,
+        "verdict": judged["verdict"].upper() if judged["rows"] or found["unverified"] else "NO LIMITS",
+        "sentence": (judged["sentence"] if judged["rows"] else NO_LIMITS) + doubt + _about_band(case)
+        if device == ("this" if case.absorbers else "bare")
+        else "",
+    }
+
+
+def no_decision(problem: str) -> dict[str, str]:
+    """Cells of a row where nothing came out."""
+    return {"peak": "-", "ratio": "-", "place": "-", "used": "-", "verdict": "NOT VERIFIED", "sentence": problem}
+
+
+def _first(doubts: list[str]) -> str:
+    more = len(doubts) - 1
+    return doubts[0].rstrip(".") + (f", and {more} more: see the full report." if more else ".")
+
+
+def _about_band(case: Case) -> str:
+    band = lock_in_band(case)
+    if not band.low < band.high:
+        return ""
+    return f" Codes expect lock-in from {band.low:.3g} to {band.high:.3g} m/s ({band.standing})."
 
 
 def attractors_status(found: dict[str, Any]) -> str:

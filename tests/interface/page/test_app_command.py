@@ -7,8 +7,6 @@ import sys
 
 from browsing import start
 
-import frahm
-
 FRAHM = [sys.executable, "-m", "frahm"]
 
 
@@ -33,14 +31,6 @@ def test_a_port_in_use_is_named():
     assert done.returncode == 2
     assert f"--port: given {port}" in done.stderr
     assert "Traceback" not in done.stderr
-
-
-def test_cases_the_page_cannot_draw_are_refused(tmp_path):
-    frahm.load_case("jacket-pipe").without_absorbers().to_yaml(tmp_path / "bare.yaml")
-    done = run("app", str(tmp_path / "bare.yaml"), "--port", "0")
-    assert done.returncode == 2
-    assert "a case with an absorber" in done.stderr
-    assert "frahm run takes any case" in done.stderr
 
 
 def test_an_interruption_ends_it_with_all_it_started():

@@ -251,7 +251,7 @@ def test_the_motion_of_a_click_is_at_the_detuning_that_the_field_shows(visit):
         )
         expect(visitor.field("detuning")).to_have_value(text)
         expect(visitor.page.locator("#motion-status")).to_contain_text(f"At σ = {float(text):.4g} rad/s")
-        clicked = re.findall(r'"detuning":([^,]+),"near"', "".join(asked))
+        clicked = re.findall(r'"place":([^,]+),"near"', "".join(asked))
         assert float(clicked[-1]) == float(text)
 
 
@@ -453,6 +453,33 @@ def test_foreign_hosts_and_origins_are_refused_by_the_running_server(server):
         connection.request("GET", "/_dash-layout", headers=headers)
         assert connection.getresponse().status == status
         connection.close()
+
+
+BARE = frahm.load_case(
+    {
+        "name": "brace",
+        "pipe": {
+            "kind": "tube", "diameter": "24 inch", "wall": "0.5 inch", "length": "28 m", "damping_ratio": 0.0015,
+            "mode_count": 3, "supports": [{"at": 0, "kind": "clamped"}, {"at": "28 m", "kind": "pinned"}],
+        },
+        "wind": {"speed": 12.0, "range": [0.0, 14.0], "strouhal": "en1991", "lift_coefficient": "en1991"},
+        "absorbers": [], "limits": {"amplitude_ratio": 0.05},
+    }
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+def test_a_bare_pipe_in_the_wind_is_decided(visit, tmp_path, width):
+    visitor = visit().rest()
+    visitor.page.set_viewport_size({"width": width, "height": 844})
+    load(visitor, BARE, tmp_path)
+    results = analyse(BARE).results
+    cell = visitor.page.locator("#decision-bare-peak")
+    expect(cell).to_have_text(f"{1e3 * results['without_absorber']['worst']['pipe_peak']:.1f} mm")
+    expect(visitor.page.locator("#decision-bare-verdict")).to_have_text(results["acceptance"]["verdict"].upper())
+    expect(visitor.page.locator("#decision-tuned-verdict")).to_have_text("PASS")
+    expect(visitor.page.locator("#decision-this")).to_be_hidden()
+    expect(visitor.page.locator("#decision-status")).to_contain_text(results["acceptance"]["sentence"])
 
 
 def test_a_server_that_has_ended_is_reported_and_leaves_no_process(context):

@@ -1,8 +1,11 @@
 """Foreign Host and Origin headers are refused; everything else is answered with headers that keep the page at home."""
 
+import base64
+import hashlib
+
 import pytest
 
-from frahm.web.guard import LocalOnly
+from frahm.web.guard import RENDERER, LocalOnly
 
 
 def answer(**headers):
@@ -59,3 +62,28 @@ def test_everybody_else_is_refused(headers):
     assert status == "403 Forbidden"
     assert b"inside" not in body
     assert b"Refused" in body
+
+
+@pytest.mark.parametrize(
+    ("headers", "code"),
+    [
+        ({"CONTENT_LENGTH": str(100 << 20)}, "413"),
+        ({"CONTENT_LENGTH": 5000 * "9"}, "413"),
+        ({"CONTENT_LENGTH": "-1"}, "400"),
+        ({"CONTENT_LENGTH": "many"}, "400"),
+        ({"HTTP_TRANSFER_ENCODING": "chunked"}, "411"),
+        ({"CONTENT_LENGTH": "20000"}, "200"),
+    ],
+)
+def test_a_body_is_read_up_to_a_limit(headers, code):
+    status, _, body = answer(**headers)
+    assert status.startswith(code)
+    assert (b"inside" in body) == (code == "200")
+
+
+def test_no_script_written_into_the_page_is_run_but_the_one_known():
+    _, head, _ = answer()
+    scripts = head["Content-Security-Policy"].split("script-src ")[1].split(";")[0]
+    assert "unsafe" not in scripts
+    digest = base64.b64encode(hashlib.sha256(RENDERER.encode()).digest()).decode()
+    assert scripts == f"'self' 'sha256-{digest}'"

@@ -3,7 +3,7 @@
 (function () {
   "use strict";
   const page = (window.frahmPage = window.frahmPage || {});
-  const still = window.frahmFigures;
+  const still = JSON.parse(document.getElementById("figures-at-rest").textContent);
   const rank = {};
   Object.keys(still.looks.response).forEach((look, i) => { rank[look] = i; });
   const parts = { live: null, exact: null, stale: false, marks: [], manifold: null, motion: null, now: null, map: null };
@@ -56,7 +56,10 @@
   // ---- response
   function trace(line) {
     const axes = line.row ? { xaxis: "x2", yaxis: "y2" } : { xaxis: "x", yaxis: "y" };
-    return Object.assign({}, still.looks.response[line.look], axes, line.more, { x: line.x, y: line.y });
+    const look = still.looks.response[line.look];
+    const over = line.hz && line.hz.length // what is said of a point of the wind
+      ? { customdata: line.hz, hovertemplate: look.hovertemplate.replace(still.axes.detuning[1], still.axes.place[1]) } : {};
+    return Object.assign({}, look, axes, over, line.more, { x: line.x, y: line.y });
   }
 
   const upright = (x, line) => ({ type: "line", xref: "x", yref: "paper", x0: x, x1: x, y0: 0, y1: 1, layer: "below", line: line });
@@ -73,13 +76,25 @@
     const tops = (valid && exact.tops) || live.part.tops || (exact && exact.tops) || [null, null];
     const base = still.layouts.response;
     const axis = (own, range) => Object.assign({}, own, range ? { range: range } : {});
-    const shapes = [upright(live.detuning, { color: still.beside.color, width: 1 })];
+    const shapes = [upright(live.at, { color: still.beside.color, width: 1 })];
     if (live.wind !== null) shapes.push(upright(live.wind, { color: still.beside.wind, width: 1, dash: "dot" }));
-    const rows = lines.some((line) => line.row) ? [] : [{ look: "bare", row: 1, x: [null], y: [null] }]; // keeps its axes
-    react("response", lines.concat(rows).map(trace), Object.assign({}, base, {
-      shapes: shapes,
-      xaxis: axis(base.xaxis, live.window), xaxis2: axis(base.xaxis2, live.window),
+    if (live.band) { // behind the lines
+      shapes.unshift({ type: "rect", xref: "x", yref: "paper", x0: live.band[0], x1: live.band[1], y0: 0, y1: 1, layer: "below",
+        fillcolor: still.beside.band, line: { width: 0 } });
+    }
+    const title = { title: { text: still.axes[live.axis][0] } };
+    if (!live.absorber) lines = lines.filter((line) => !line.row);
+    const rows = !live.absorber || lines.some((line) => line.row) ? [] : [{ look: "bare", row: 1, x: [null], y: [null] }]; // keeps its axes
+    const axes = live.absorber ? {
+      xaxis: axis(base.xaxis, live.window), xaxis2: Object.assign(axis(base.xaxis2, live.window), title),
       yaxis: axis(base.yaxis, tops[0] && [0, tops[0]]), yaxis2: axis(base.yaxis2, tops[1] && [0, tops[1]]),
+    } : { // a pipe without absorber has the whole height
+      xaxis: Object.assign(axis(base.xaxis2, live.window), title, { anchor: "y" }),
+      yaxis: Object.assign(axis(base.yaxis, tops[0] && [0, tops[0]]), { domain: [0, 1] }),
+    };
+    const { xaxis, xaxis2, yaxis, yaxis2, ...rest } = base;
+    react("response", lines.concat(rows).map(trace), Object.assign(rest, axes, {
+      shapes: shapes, uirevision: live.axis + live.absorber,
     }));
     listen("response", (point) => page.clicked(point.x, point.y, point.data.yaxis === "y2"));
   }
@@ -123,7 +138,7 @@
     if (!kept) { // the exact curve of other values: gone, or pale if nothing live takes its place
       if (answer.slow) parts.exact = null; else parts.stale = true;
     }
-    if (!kept || parts.live.detuning !== answer.detuning) parts.marks = [];
+    if (!kept || parts.live.at !== answer.at) parts.marks = [];
     parts.live = answer;
     soon("response", () => { drawResponse(); then(); });
   };

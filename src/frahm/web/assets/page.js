@@ -10,7 +10,7 @@
   const SHARE = 6; // times as long as they took to draw is left to the response
   const LATE = 500; // ms without an answer after which what is drawn is marked as of older values
   const BEAT = 2000; // ms between signs of life
-  const state = { case: null, session: null, plane: "kappa", tuned: false, number: 0, key: null, detuning: null, slow: true };
+  const state = { case: null, session: null, plane: "kappa", tuned: false, number: 0, key: null, at: null, axis: null, absorber: true, slow: true };
   const set = (id, props) => window.dash_clientside.set_props(id, props);
   const say = (id, text) => { const place = document.getElementById(id); if (place.textContent !== text) place.textContent = text; };
   const fade = (id, look) => { const place = document.getElementById(id); if (place && place.className !== look) set(id, { className: look }); };
@@ -70,14 +70,19 @@
       return;
     }
     const other = answer.key !== state.key;
-    const elsewhere = other || answer.detuning !== state.detuning;
+    const elsewhere = other || answer.at !== state.at;
     const first = state.key === null;
-    Object.assign(state, { key: answer.key, detuning: answer.detuning, window: answer.window });
+    Object.assign(state, { key: answer.key, at: answer.at, axis: answer.axis, window: answer.window });
     entitle(answer.heading);
     if (state.slow !== answer.slow) arrange(answer.slow);
+    document.body.classList.toggle("no-absorber", !answer.absorber);
+    state.absorber = answer.absorber;
     if (elsewhere) page.forgetMotion();
     page.showResponse(answer, () => { window.frahmDrawn = number; });
-    if (other) say("exact-status", "The exact response follows when the sliders rest.");
+    if (other) {
+      say("exact-status", "The exact response follows when the sliders rest.");
+      undecide();
+    }
     if (elsewhere && !first) { // what was computed on demand belongs to other values
       fade("motion-holder", "stale");
       fade("attractors", "stale");
@@ -131,6 +136,40 @@
     if (!answer.key || drawn.busy || answer.key !== state.key) return; // newer values come: they ask again
     if (answer.part) page.showExact(answer.part);
     say("exact-status", answer.status);
+    decide(answer.key);
+  }
+
+  // ---- the decision: one device after the other, those in closed form first
+  const cells = ["peak", "ratio", "place", "used", "verdict"];
+  const rowOf = (device) => document.getElementById("decision-" + device);
+
+  function undecide() {
+    ["bare", "this", "tuned"].forEach((device) => rowOf(device).classList.add("stale"));
+    say("decision-status", "Computed when the sliders rest; what is shown in a paler tint is of other values.");
+  }
+
+  async function decide(key) {
+    let sentence = "";
+    for (const device of state.absorber ? ["bare", "tuned", "this"] : ["bare", "tuned"]) {
+      say("decision-status", sentence + "Searching the worst lasting motion over the range …");
+      let answer = {};
+      try {
+        const response = await fetch("drawn/decision", { method: "POST", headers: { "Content-Type": "application/json" },
+          body: JSON.stringify(Object.assign(values(), { device: device })) });
+        answer = response.ok ? await response.json() : {};
+      } catch (error) { // it has ended: the beat says so
+      }
+      if (state.key !== key) return; // newer values come: they ask again
+      if (answer.key !== key) {
+        say("decision-status", sentence + "Not finished: what was asked for went before. A changed value starts it again.");
+        return;
+      }
+      cells.forEach((name) => say("decision-" + device + "-" + name, answer.row[name]));
+      rowOf(device).classList.remove("stale");
+      rowOf(device).dataset.verdict = answer.row.verdict;
+      if (answer.row.sentence) sentence = answer.row.sentence + " ";
+    }
+    say("decision-status", sentence);
   }
 
   // ---- what the buttons lead to
@@ -188,10 +227,10 @@
 
   page.clicked = function (x, y, second) {
     const at = rounded(x);
-    page.place("detuning", String(at));
+    page.place(state.axis, String(at));
     hand();
     want();
-    set("clicked", { data: { detuning: at, near: second ? [null, y] : [y, null], at: Date.now() } });
+    set("clicked", { data: { place: at, near: second ? [null, y] : [y, null], at: Date.now() } });
   };
 
   page.mapped = function (x, y) {

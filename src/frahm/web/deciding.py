@@ -1,0 +1,72 @@
+"""The decision of the page: the worst motion over the range of operation of a device, by the steps of `frahm run`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from frahm.case import Case
+from frahm.web.tuned import tuned_case
+
+DEVICES = ("bare", "this", "tuned")
+
+
+def decision(case: Case, progress: Callable[[str, int, int], None], *, device: str) -> dict[str, Any]:
+    """Worst motion, utilisation of the limits and verdict of a device on the pipe of a case.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable
+        Told what is done.
+    device : {"bare", "this", "tuned"}
+        Without absorbers, with those of the case, or with a tuned mass damper of the same mass.
+
+    Returns
+    -------
+    dict
+        "worst": row of the worst motion, None if there is no bounded one; "acceptance" as in the summary of
+        `frahm run`, of the limits alone; "lock_in" and "range" as there.
+    """
+    from frahm.analysis.acceptance import acceptance, judged_limits
+    from frahm.analysis.fatigue import fatigue
+    from frahm.analysis.linear import without_absorber
+    from frahm.analysis.long_term import worst
+    from frahm.analysis.motions import motions
+    from frahm.analysis.response import exact_response
+    from frahm.analysis.section import FAIL, UNVERIFIED, Work
+    from frahm.analysis.verdict import largest_motion, lock_in
+    from frahm.assessment import accepted, utilisations
+
+    if device == "bare":
+        return _bare(
+            case, without_absorber(Work(case)), fatigue(Work(case.without_absorbers())), utilisations, accepted
+        )
+    steps = (without_absorber, exact_response, motions, worst, fatigue, largest_motion, lock_in, acceptance)
+    work = Work(tuned_case(case) if device == "tuned" else case)
+    for number, step in enumerate(steps):
+        progress(device, number, len(steps))
+        work = work.with_section(step(work))
+    doubts = [*work.done.unverified, *(c.detail for c in work.done.checks if c.status in (FAIL, UNVERIFIED))]
+    results = work.done.results
+    return {
+        "worst": results.get("worst_case"),
+        "acceptance": accepted(judged_limits(work), not doubts),
+        "unverified": doubts,
+        "lock_in": results.get("lock_in"),
+        "range": results.get("range"),
+    }
+
+
+def _bare(case: Case, found: Any, damaged: Any, utilisations: Any, accepted: Any) -> dict[str, Any]:
+    """The pipe without absorbers over the range of the case."""
+    worst = found.results["without_absorber"].get("worst")
+    rows = utilisations(case.without_absorbers(), worst, damaged.results.get("fatigue"))
+    doubts = [*found.notes] if worst is None else [*worst["unverified"], *damaged.unverified]
+    return {
+        "worst": worst,
+        "acceptance": accepted(rows, not doubts),
+        "unverified": doubts,
+        "lock_in": None,
+        "range": None,
+    }
