@@ -193,11 +193,12 @@ def _concluded(work: Work, interrupted: bool) -> Analysis:
 
 
 def provenance(case: Case) -> dict[str, Any]:
-    """Digest of a case, its defaulted fields, versions and tolerances."""
+    """Digest of a case, its defaulted fields, what was typed with a unit of its own, versions and tolerances."""
     packages = ("numpy", "scipy", "numba", "xarray")
     return {
         "digest": case.digest,
         "defaulted": defaulted_fields(case),
+        "typed": dict(case.typed),
         "versions": {
             "python": platform.python_version(),
             **{name: importlib.metadata.version(name) for name in packages},

@@ -73,7 +73,7 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         objective_title=_titled(objective),
         least_stroke=least_stroke(study),
         plots={},
-        inputs=input_rows(study.case, defaulted_fields(study.case)),
+        inputs=input_rows(study.case, defaulted_fields(study.case), study.case.typed),
         checks=check_rows(study),
         provenance=provenance_rows(study),
         missed=missed_below(study),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from markupsafe import Markup, escape
@@ -60,23 +60,22 @@ def with_indices(rows: list[tuple[str, ...]]) -> list[list[Markup]]:
     ]
 
 
-def input_rows(case: Case, defaulted: list[str]) -> list[InputRow]:
+def input_rows(case: Case, defaulted: list[str], typed: Mapping[str, str]) -> list[InputRow]:
     """Every field of the case in SI units, as typed where that is another unit, those left out in the file marked."""
     return [
         InputRow(
             field.path, field.facts.title, _symbol(field.facts.symbol), _value(field.value), _unit(field.facts.unit),
-            field.path in defaulted, _typed(field),
+            field.path in defaulted, _typed(field, typed.get(field.path)),
         )
         for field in field_values(case)
         if field.path not in ("name", "title", "absorbers") and not field.path.startswith("document")
     ]  # fmt: skip
 
 
-def _typed(field: FieldValue) -> str:
+def _typed(field: FieldValue, text: str | None) -> str:
     """What was typed, if it is not the very value in the very unit."""
-    if field.typed is None or field.typed.replace(" ", "") == f"{_value(field.value)}{field.facts.unit}":
-        return ""
-    return field.typed
+    same = text is None or text.replace(" ", "") == f"{_value(field.value)}{field.facts.unit}"
+    return "" if same else str(text)
 
 
 def mode_count(case: Case) -> int:

@@ -108,9 +108,9 @@ def test_the_title_block_frames_the_report_and_inputs_come_back_as_typed():
     case["pipe"]["diameter"] = "30 inch"
     case = frahm.load_case(case | {"document": {"project": "Kittiwake", "revision": "B", "checked": "A. N. Other"}})
     assert document_rows(case) == [("Project", "Kittiwake"), ("Revision", "B"), ("Checked by", "A. N. Other")]
-    (diameter,) = [row for row in input_rows(case, []) if row.path == "pipe.diameter"]
+    (diameter,) = [row for row in input_rows(case, [], case.typed) if row.path == "pipe.diameter"]
     assert (diameter.typed, diameter.value, diameter.unit) == ("30 inch", "0.762", "m")
-    assert not [row for row in input_rows(case, []) if row.path.startswith("document")]
+    assert not [row for row in input_rows(case, [], case.typed) if row.path.startswith("document")]
 
 
 def test_every_formula_and_limit_is_a_reference_with_a_standing(failing):
