@@ -42,8 +42,8 @@ def test_an_almost_linear_absorber_through_the_attractors_is_the_linear_one(case
 def test_a_modulated_motion_against_a_plain_long_history(case):
     """Dense samples without interpolation, a longer window from another start, and the library alone."""
     system = frahm.build_system(case.with_wind(speed=2.64))
-    (attractor, *_) = frahm.find_attractors(system, detuning=0.01, samples=8)
-    assert attractor.kind == "quasi-periodic"
+    found = frahm.find_attractors(system, detuning=0.01, samples=8)  # beside it are beats locked to 43 periods
+    attractor = next(attractor for attractor in found if attractor.kind == "quasi-periodic")
     found = motion_damage(system, attractor, detail_of(case))
     assert found.settled
     history = frahm.integrate(system, detuning=0.01, periods=5000, samples_per_period=128).last(4000)

@@ -97,7 +97,7 @@ def test_a_full_disk_is_one_message_and_the_summary_is_kept(stored, case, tmp_pa
     assert "results.nc" in done.stderr
     assert "File too large" in done.stderr
     assert {entry.name for entry in folder.iterdir()} == {"case.yaml", "summary.json"}
-    assert refused(run("show", folder), "results.nc", "No such file")
+    assert refused(run("show", folder), "results.nc", "no such file")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")

@@ -257,7 +257,7 @@ def test_the_stored_case_runs_again(finished):
 def test_a_folder_of_the_same_case_is_written_again_and_another_only_by_force(tmp_path):
     case, other, out = tmp_path / "a.yaml", tmp_path / "b.yaml", tmp_path / "o"
     QUICK.to_yaml(case)
-    QUICK.with_wind(speed=2.6).to_yaml(other)
+    QUICK.with_wind(speed=2.8).to_yaml(other)
     arguments = ["--out", str(out)]
     assert CliRunner().invoke(app, ["run", str(case), *arguments]).exit_code == 0
     assert CliRunner().invoke(app, ["run", str(case), *arguments]).exit_code == 0
@@ -268,7 +268,7 @@ def test_a_folder_of_the_same_case_is_written_again_and_another_only_by_force(tm
     assert "another case" in refused.stderr
     assert (out / "summary.json").read_bytes() == before
     assert CliRunner().invoke(app, ["run", str(other), *arguments, "--force"]).exit_code == 0
-    assert json.loads((out / "summary.json").read_text())["case"]["wind"]["speed"] == 2.6
+    assert json.loads((out / "summary.json").read_text())["case"]["wind"]["speed"] == 2.8
 
 
 def test_what_is_unverified_is_named_and_ends_in_3(tmp_path):

@@ -57,6 +57,16 @@ class Verification:
         return self.motion.relative_peak
 
     @property
+    def pipe_rms(self) -> float:
+        """Largest pipe rms [m]."""
+        return self.motion.pipe_rms
+
+    @property
+    def frequency(self) -> float:
+        """Where the pipe peak occurs [rad/s]."""
+        return self.motion.frequency
+
+    @property
     def verified(self) -> bool:
         """Whether nothing speaks against it."""
         return self.motion.verified

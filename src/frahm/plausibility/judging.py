@@ -21,7 +21,7 @@ def plausibility(case: Case | str | os.PathLike[str] | Mapping[str, Any]) -> tup
     ----------
     case : Case, str, Path or dict
         A case, or whatever `load_case` reads. The texts it was typed as are used: of a plain number it is asked
-        whether another unit was meant.
+        whether another unit was meant, such as Hz of a frequency [rad/s].
 
     Returns
     -------

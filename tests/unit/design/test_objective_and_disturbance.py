@@ -82,10 +82,11 @@ def test_settings_come_from_the_case_and_single_ones_take_their_place():
 
 def test_coil_springs_have_the_stiffness_and_stress_asked_for_and_their_solid_length():
     springs = coil_springs(20.0, 7e5, 0.013, room=0.08, stress=3e8)
-    d, D, n = float(springs.wire), 8 * float(springs.wire), float(springs.coils)
+    C = float(springs.index)
+    d, D, n = float(springs.wire), C * float(springs.wire), float(springs.coils)
     assert 7.9e10 * d**4 / (8 * D**3 * n) == pytest.approx(7e5 * 0.08**2 + 10.0)
     assert float(springs.free) == pytest.approx(0.08 - 0.8 / (7e5 * 0.08**2 + 10.0))
-    wahl = 31 / 28 + 0.615 / 8
+    wahl = (4 * C - 1) / (4 * C - 4) + 0.615 / C
     assert 8 * float(springs.force) * D * wahl / (np.pi * d**3) == pytest.approx(3e8)
     assert float(springs.solid) == pytest.approx((n + 2) * d)
     assert float(springs.pretension) == pytest.approx(0.5 * 20.0 * 0.08)
