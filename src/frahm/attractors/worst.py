@@ -119,7 +119,7 @@ class WorstCase:
 
     @property
     def verified(self) -> bool:
-        """Whether nothing speaks against it; what does is in `unverified`."""
+        """Whether nothing speaks against it; the sentences that do stand beside it."""
         return self.motion.verified
 
     @property
