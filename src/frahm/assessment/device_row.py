@@ -34,7 +34,7 @@ def device_row(
     dict
         Of the worst motion: where, kind, `pipe_peak` [m], `stress_range` [Pa]; `amplitude_ratio` A/D [-], `stroke` [m],
         `damage` [-], `life_years`, `utilisation` by limit and `governing`, the largest of them; `verified` with its
-        reasons in `unverified`.
+        reasons in ``unverified``.
     """
     used = {row.name: row.ratio for row in utilisations(case, worst, fatigue)}
     return {

@@ -80,7 +80,7 @@ def fatigue_damage(
     Raises
     ------
     ParameterError
-        If the case has no climate or no detail, or for bad input. What could not be settled is named in `unverified`.
+        If the case has no climate or no detail, or for bad input. What could not be settled the result names.
     """
     case = load_case(case)
     fatigue, climate = fatigue_section(case), wind_climate(case)

@@ -133,7 +133,7 @@ def periodic_responses(
     -------
     list of PeriodicResponse
         Responses with the period of the excitation; both of a mirrored pair are listed. Its attributes `searched` (a
-        sentence) and `unverified` (a tuple of sentences) say how far the search went.
+        sentence) and ``unverified`` (a tuple of sentences) say how far the search went.
 
     Raises
     ------
