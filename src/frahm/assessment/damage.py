@@ -63,8 +63,10 @@ class FatigueDamage:
         Hot-spot stress range of the resonance in the band without absorbers [Pa].
     section : float or None
         Where the stress is taken along an elastic pipe [m].
-    unverified, notes : tuple of str
-        Sentences: what speaks against the numbers; what a reader must know.
+    unverified : tuple of str
+        Sentences: what speaks against the numbers.
+    notes : tuple of str
+        Sentences: what a reader must know.
     case : Case
     settings : dict
     """
