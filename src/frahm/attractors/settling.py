@@ -29,6 +29,7 @@ _GROUP = 4096  # coordinates carried at a time: bounds the memory
 _FAR = 1e9  # times the size of everything seen at the start
 _ATTEMPTS = 8  # motions per call that may be tried as evidence of an attractor that is no orbit
 _AGAIN = 1.5  # times the periods at which it was tried: when a motion may be tried again
+_AT_A_TIME = 8  # motions whose orbit is looked for after every block of periods, and at the end on each regular cloud
 _CONSERVATIVE = 1e-9  # rate of contraction, over Omega, that rounding cannot tell from none
 _UNSTABLE = 1.01  # largest multiplier above which differences are enough to say that an orbit is not stable
 UNLABELLED = -1
@@ -96,9 +97,13 @@ class _Watched:
         return [int(i) for i, tried in zip(self.active, self.tried, strict=True) if periods[i] >= _AGAIN * tried]
 
     def to_refine(self, periods: np.ndarray, held: np.ndarray) -> list[int]:
-        """States that may be near an orbit: due, not refused lately, and not where a known cloud has been."""
+        """States that may be near an orbit: due, not refused lately, and not where a known cloud has been.
+
+        A few at a time, those first that were refused longest ago: what they lead to settles most of the others.
+        """
         refused = dict(zip(self.active.tolist(), self.refused.tolist(), strict=True))
-        return [i for i in self.due(periods) if periods[i] >= _AGAIN * refused[i] and held[i] == UNLABELLED]
+        asked = [i for i in self.due(periods) if periods[i] >= _AGAIN * refused[i] and held[i] == UNLABELLED]
+        return sorted(sorted(asked, key=lambda i: refused[i])[:_AT_A_TIME])
 
     def place(self, state: int) -> int | None:
         """Where a state stands among those still followed."""
@@ -306,8 +311,13 @@ class Settling:
         if not len(watched.active) or watched.history.shape[1] < 2 * WINDOW * BLOCK:
             return
         index, share = self._nearest_cloud(watched.history[:, -WINDOW * BLOCK :])
+        refused: dict[int, int] = {}  # of motions on each regular cloud, how many approach no orbit
         for at, i in enumerate(watched.active):
-            orbit = self._orbit_approached(watched.history[at]) if self.dissipative else None
+            cloud = int(index[at]) if share[at] >= INSIDE and self._is_regular(int(index[at])) else UNLABELLED
+            asked = self.dissipative and refused.get(cloud, 0) < _AT_A_TIME
+            orbit = self._orbit_approached(watched.history[at]) if asked else None
+            if orbit is None and cloud != UNLABELLED:
+                refused[cloud] = refused.get(cloud, 0) + 1
             if orbit is not None:
                 _label(result, watched.active[at : at + 1], orbit)
             elif share[at] >= (INSIDE if result.held[i] == UNLABELLED else BELONGS):

@@ -67,6 +67,11 @@ class Verification:
         return self.motion.frequency
 
     @property
+    def kind(self) -> str:
+        """Of the motion that causes the pipe peak."""
+        return self.motion.kind
+
+    @property
     def verified(self) -> bool:
         """Whether nothing speaks against it."""
         return self.motion.verified

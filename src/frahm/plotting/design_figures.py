@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,14 +20,14 @@ if TYPE_CHECKING:
 
 
 def save_design_figures(
-    data: xr.Dataset, folder: str | Path, curve: xr.Dataset, lasting: xr.Dataset, marks: Marks
+    data: xr.Dataset, folder: str | Path, curve: xr.Dataset, lasting: xr.Dataset | None, marks: Marks
 ) -> list[Path]:
     """Draw what the dataset of a design study holds into an existing folder, as PNG and SVG, with CSV; return paths.
 
-    `curve` is the exact response with the chosen design, `lasting` what lasts with every device.
+    `curve` is the exact response with the chosen design, `lasting` what lasts with every device; None where the work was
+    interrupted before they were compared.
     """
-    drawings = [
-        ("decision", "", lambda: decision_figure(lasting, marks)),
+    drawings: list[tuple[str, str, Callable[[], Figure]]] = [
         ("design-comparison", "rival", lambda: comparison_figure(data)),
         ("design-response", "point", lambda: response_figure(curve, "pipe_peak", [], None, None, None)),
     ]
@@ -36,10 +37,12 @@ def save_design_figures(
         drawings.append(("design-margin", "margin_index", lambda: margin_figure(data)))
     paths = []
     with figure_style():
+        if lasting is not None:
+            paths += save_figure(decision_figure(lasting, marks), Path(folder) / "decision")
+            paths += write_data(lasting, Path(folder) / "decision.csv")
         for name, _, draw in drawings:
             paths += save_figure(draw(), Path(folder) / name)
-    paths += write_data(lasting, Path(folder) / "decision.csv")
-    for name, dimension, _ in drawings[1:]:
+    for name, dimension, _ in drawings:
         paths += write_data(_shown(curve if dimension == "point" else data, dimension), Path(folder) / f"{name}.csv")
     return paths
 

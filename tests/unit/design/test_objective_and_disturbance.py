@@ -82,7 +82,7 @@ def test_settings_come_from_the_case_and_single_ones_take_their_place():
 
 def test_coil_springs_have_the_stiffness_and_stress_asked_for_and_their_solid_length():
     springs = coil_springs(20.0, 7e5, 0.013, room=0.08, stress=3e8)
-    C = float(springs.index)
+    C = float(springs.spring_index)
     d, D, n = float(springs.wire), C * float(springs.wire), float(springs.coils)
     assert 7.9e10 * d**4 / (8 * D**3 * n) == pytest.approx(7e5 * 0.08**2 + 10.0)
     assert float(springs.free) == pytest.approx(0.08 - 0.8 / (7e5 * 0.08**2 + 10.0))
