@@ -24,8 +24,8 @@ def save_design_figures(
 ) -> list[Path]:
     """Draw what the dataset of a design study holds into an existing folder, as PNG and SVG, with CSV; return paths.
 
-    `curve` is the exact response with the chosen design, `lasting` what lasts with every device; None where the work was
-    interrupted before they were compared.
+    `curve` is the exact response with the chosen design, `lasting` what lasts with every device; None where the
+    work was interrupted before they were compared.
     """
     drawings: list[tuple[str, str, Callable[[], Figure]]] = [
         ("design-comparison", "rival", lambda: comparison_figure(data)),

@@ -41,7 +41,8 @@ def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
     except OSError as error:
         raise ParameterError("DIR", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
     curve = frequency_response(study.best_case).to_dataset()
-    drawn = save_design_figures(
+    lasting = together(study.lasting) if study.lasting else None
+    drawn = save_design_figures(study.to_dataset(), figures, curve, lasting, _marks(study.case))
         study.to_dataset(), figures, curve, together(study.lasting) if study.lasting else None, _marks(study.case)
     )
     images = {file.stem: image_address(file.read_text(encoding="utf-8")) for file in drawn if file.suffix == ".svg"}
