@@ -11,9 +11,10 @@ import numpy as np
 
 from frahm.analysis.section import Section, Work
 from frahm.arrays import labelled
-from frahm.assessment import device_row, fatigue_damage, with_stress
+from frahm.assessment import damage_of_modes, device_row, doubts_of_modes, total_damage, with_stress
 from frahm.attractors import WorstMotion, joined, lasting_motions, worst_over
 from frahm.case import Case
+from frahm.design.completing import other_motions_at
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import Windows
 from frahm.design.problem import Problem
@@ -136,12 +137,13 @@ def _fatigue(found: Mapping[str, Any] | None, which: str) -> dict[str, Any] | No
 
 def _counted(case: Case) -> tuple[dict[str, Any] | None, list[str]]:
     try:
-        found = fatigue_damage(case)
+        parts = damage_of_modes(case)
     except ParameterError as refused:
         return None, [f"The fatigue damage could not be counted: {refused}"]
-    used = found.design_fatigue_factor * found.damage_with
-    row = {"damage": found.damage_with, "utilisation_with": used, "life_years": found.life_years}
-    return row, list(found.unverified)
+    total = total_damage(parts)
+    row = {"damage": total["damage_with"], "utilisation_with": total["utilisation_with"],
+           "life_years": total["life_years"]}  # fmt: skip
+    return row, list(doubts_of_modes(parts))
 
 
 def _doubts_of_fatigue(work: Work) -> list[str]:
@@ -176,5 +178,7 @@ def _at_error(
     off = Disturbance(pipe_frequency=ratio, lock_in=windows.axis is None)
     changed = off.of(build_system(device.case))
     within = windows.range(off, changed.reference_frequency)
-    worst = worst_over(changed, within, samples=1, min_basin=0.0, seed=1)
+    motion = worst_over(changed, within, samples=1, min_basin=0.0, seed=1).motion
+    others = other_motions_at(device.case, ratio) if windows.moving and windows.axis is not None else []
+    worst = joined([motion, *others])
     return worst.pipe_peak, worst.verified

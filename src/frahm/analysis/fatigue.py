@@ -7,7 +7,14 @@ import dataclasses
 import numpy as np
 
 from frahm.analysis.section import FAIL, PASS, Check, Section, Work
-from frahm.assessment import FatigueDamage, fatigue_damage, rainflow_cycles, turning_points
+from frahm.assessment import (
+    FatigueDamage,
+    damage_of_modes,
+    doubts_of_modes,
+    rainflow_cycles,
+    total_damage,
+    turning_points,
+)
 from frahm.assessment.detail import Detail, detail_of
 from frahm.assessment.linear_damage import linear_pipe
 from frahm.errors import ParameterError
@@ -24,16 +31,28 @@ def fatigue(work: Work) -> Section:
     if work.case.fatigue is None:
         return Section()
     try:
-        found = fatigue_damage(work.case)
+        parts = damage_of_modes(work.case)
     except ParameterError as refused:
         return Section(unverified=(f"The fatigue damage could not be counted: {refused}",))
+    found = parts[0]
+    modes = [_mode(part) for part in parts[1:]]
     return Section(
-        results={"fatigue": _summary(found)},
+        results={"fatigue": _summary(found) | total_damage(parts) | {"other_modes": modes}},
         data={"fatigue": found.to_dataset()},
         checks=_closed_form(found),
-        unverified=found.unverified,
+        unverified=doubts_of_modes(parts),
         notes=found.notes,
     )
+
+
+def _mode(part: FatigueDamage) -> dict[str, object]:
+    """Damage of another mode over the winds that excite it."""
+    return {
+        "mode": part.case.pipe.governing_mode,  # type: ignore[union-attr]
+        "wind_speeds": [float(part.lower[0]), float(part.upper[-1])],
+        "damage_with": part.damage_with,
+        "damage_without": part.damage_without,
+    }
 
 
 def _summary(found: FatigueDamage) -> dict[str, object]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from frahm import readable
+from frahm.analysis.linear import others_of
 from frahm.analysis.margin import margin_sentence
 from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
 from frahm.loads import lock_in_band
@@ -30,7 +31,7 @@ def largest_motion(work: Work) -> Section:
     doubts: tuple[str, ...] = ()
     if worst is not None:
         found["worst_case"] = {name: largest[name] for name in ("pipe_peak", "detuning", "wind_speed", "kind")}
-        found["worst_case"]["frequency"] = work.case.pipe.frequency + largest["detuning"]
+        found["worst_case"]["frequency"] = largest.get("frequency", work.case.pipe.frequency + largest["detuning"])
         found["worst_case"]["relative_peak"] = max(stroke or 0.0, worst["relative_peak"])
         if largest["pipe_peak"] > _SAME * worst["pipe_peak"]:
             doubts = (f"The search for the worst case missed a motion of {readable.length(largest['pipe_peak'])}"
@@ -75,7 +76,7 @@ def _from_worst_case(work: Work) -> list[dict[str, Any]]:
     found = work.done.results.get("worst_case")
     if found is None or not math.isfinite(found["pipe_peak"]):
         return []
-    row = {name: found[name] for name in ("pipe_peak", "relative_peak", "detuning", "wind_speed")}
+    row = {name: found[name] for name in ("pipe_peak", "relative_peak", "detuning", "wind_speed", "frequency")}
     return [{**row, "kind": readable.motion(found["kind"]), "source": found["tier"]}]
 
 
@@ -125,7 +126,7 @@ def _about_largest(results: dict[str, Any]) -> list[str]:
     largest = results.get("largest_motion")
     if largest is None:
         return []
-    over = results.get("range", {}).get("text", "the window")
+    over = results.get("worst_case", {}).get("range", "the window")
     text = (
         f"Over {over}, the largest pipe motion found, transients aside, is {readable.length(largest['pipe_peak'])} "
         f"({largest['kind']}, {_place(largest)})"
@@ -153,7 +154,9 @@ def lock_in(work: Work) -> Section:
     motions, worst = work.done.results.get("motions"), work.done.results.get("worst_case")
     if not motions or worst is None:
         return Section()
-    band, speed, here = lock_in_band(work.case), work.case.wind.speed, motions[0]
+    speed, here = work.case.wind.speed, motions[0]
+    bands = [lock_in_band(case) for case in (work.case, *(case for case, _ in others_of(work)))]
+    band = next((band for band in bands if band.low <= speed <= band.high), bands[0])
     inside = bool(band.low <= speed <= band.high)
     return Section(results={"lock_in": {
         "design_wind": speed, "band": [band.low, band.high], "standing": band.standing, "inside": inside,

@@ -1,6 +1,7 @@
 """Room `assessment`: stress histories, cycles and fatigue damage over the attractors and the wind climate."""
 
 from frahm.assessment.acceptance import Utilisation, accepted, utilisations
+from frahm.assessment.all_modes import damage_of_modes, doubts_of_modes, total_damage
 from frahm.assessment.closed_forms import constant_range_damage, weibull_damage
 from frahm.assessment.damage import FatigueDamage
 from frahm.assessment.device_row import device_row
@@ -16,10 +17,13 @@ __all__ = [
     "Utilisation",
     "accepted",
     "constant_range_damage",
+    "damage_of_modes",
     "device_row",
+    "doubts_of_modes",
     "fatigue_damage",
     "rainflow_cycles",
     "stress_places",
+    "total_damage",
     "transverse_spring_cycles",
     "turning_points",
     "utilisations",

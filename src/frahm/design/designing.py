@@ -13,10 +13,10 @@ import numpy as np
 
 from frahm import __version__
 from frahm.assessment import accepted, device_row, utilisations
-from frahm.attractors import WorstCase, WorstMotion
+from frahm.attractors import WorstCase, WorstMotion, joined
 from frahm.case import FAMILIES, Case, Design, load_case
 from frahm.design.absorber import DesignedAbsorber, absorber_of, parameters_text, with_design, without_first
-from frahm.design.completing import fatigue_row, worst_motion
+from frahm.design.completing import fatigue_row, other_motions_at, worst_motion
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import exact_birth
 from frahm.design.finalists import Finalist, finalists
@@ -405,9 +405,13 @@ class _Designing:
                 if error == 1:  # known already, and better
                     return rival.worst
                 one = Disturbance(pipe_frequency=error, lock_in=lock_in)
-                return verification(
+                motion = verification(
                     system, windows, [one], objective, samples=_TABLE_SAMPLES, seed=self.settings.seed, quick=True
                 ).motion
+                if not self.problem.within.moves:
+                    return motion
+                others = other_motions_at(self._rival_case(rival), error, self.problem.most_mass_ratio)
+                return joined([motion, *others])
 
             rows = in_threads(row, self.settings.errors)
             self.found.table[name] = tuple(row.pipe_peak for row in rows)

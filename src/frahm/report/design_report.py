@@ -43,8 +43,6 @@ def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
     curve = frequency_response(study.best_case).to_dataset()
     lasting = together(study.lasting) if study.lasting else None
     drawn = save_design_figures(study.to_dataset(), figures, curve, lasting, _marks(study.case))
-        study.to_dataset(), figures, curve, together(study.lasting) if study.lasting else None, _marks(study.case)
-    )
     images = {file.stem: image_address(file.read_text(encoding="utf-8")) for file in drawn if file.suffix == ".svg"}
     write_text(path, render_design_report(study, images))
     return path

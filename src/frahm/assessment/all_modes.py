@@ -1,0 +1,54 @@
+"""Fatigue damage over every mode that winds of the site excite, each with the lift in step with it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from frahm.assessment.damage import FatigueDamage
+from frahm.assessment.fatigue import fatigue_damage
+from frahm.case import Case
+from frahm.loads import operating_range, other_modes
+
+
+def damage_of_modes(case: Case) -> tuple[FatigueDamage, ...]:
+    """The damage in the range of operation of a case, and that of each other mode over the winds that excite it.
+
+    A case that names its winds (`fatigue.wind_speeds`, `analysis.wind` or `analysis.detuning`) is counted over these
+    alone.
+    """
+    first = fatigue_damage(case)
+    named = case.fatigue is not None and case.fatigue.wind_speeds is not None
+    others = () if named or not operating_range(case).moves else other_modes(case)
+    return (first, *(fatigue_damage(other, wind=part.wind) for other, part in others))
+
+
+def total_damage(parts: tuple[FatigueDamage, ...]) -> dict[str, Any]:
+    """Sums over the modes as plain data: every mode at the section it stresses most, which is the safe side."""
+    first = parts[0]
+    factor, years = first.design_fatigue_factor, first.duration_years
+    sums = {
+        name: float(sum(getattr(part, name) for part in parts))
+        for name in ("damage_with", "damage_without", "damage_with_weighted", "locked_in_with", "locked_in_without")
+    }
+    return {
+        **sums,
+        "utilisation_with": factor * sums["damage_with"],
+        "utilisation_without": factor * sums["damage_without"],
+        "life_years": _life(years, sums["damage_with"]),
+        "life_years_without": _life(years, sums["damage_without"]),
+        "stress_range_with": max(float(np.max(part.range_with, initial=0.0)) for part in parts),
+        "stress_range_without": max(part.stress_range_without for part in parts),
+        "verified": all(part.verified for part in parts),
+    }
+
+
+def doubts_of_modes(parts: tuple[FatigueDamage, ...]) -> tuple[str, ...]:
+    """What speaks against the damage of any mode."""
+    return tuple(dict.fromkeys(doubt for part in parts for doubt in part.unverified))
+
+
+def _life(years: float, damage: float) -> float:
+    return years / damage if damage > 0 else math.inf
