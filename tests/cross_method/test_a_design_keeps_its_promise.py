@@ -10,7 +10,13 @@ MEMBER = {
     "pipe": {"kind": "mode", "mass": "200 kg", "frequency": "2.1 Hz", "damping_ratio": 0.003, "diameter": "0.5 m"},
     "wind": {"speed": "5.4 m/s", "strouhal": 0.2, "lift_coefficient": 0.35, "range": [0, 25]},
     "climate": {"duration": "20 year", "weibull": {"scale": 6, "shape": 2}},
-    "fatigue": {"curve": "F1", "stress_per_displacement": "900 MPa/m", "samples": 8, "bins": 8},
+    "fatigue": {
+        "curve": "F1",
+        "stress_per_displacement": "900 MPa/m",
+        "samples": 8,
+        "bins": 8,
+        "design_fatigue_factor": 2,
+    },
     "limits": {"amplitude_ratio": 0.1},
 }
 CLAMPED = {
@@ -37,6 +43,7 @@ def test_an_analysis_of_the_best_design_finds_what_was_promised():
     assert found["worst_case"]["relative_peak"] == pytest.approx(row["relative_peak"], rel=1e-12)
     assert found["worst_case"]["stress_range"] == pytest.approx(row["stress_range"], rel=1e-12)
     assert found["fatigue"]["damage_with"] == pytest.approx(row["fatigue"]["damage"], rel=1e-9)
+    assert found["fatigue"]["life_years"] == pytest.approx(20 / (2 * row["fatigue"]["damage"]), rel=1e-9)
     bare = next(row for row in study.results()["comparison"] if row["name"] == "none")
     assert found["without_absorber"]["pipe_peak_max"] == pytest.approx(bare["worst_pipe_peak"], rel=1e-9)
     used = found["acceptance"]["utilisation"]["amplitude_ratio"]

@@ -37,8 +37,8 @@ def total_damage(parts: tuple[FatigueDamage, ...]) -> dict[str, Any]:
         **sums,
         "utilisation_with": factor * sums["damage_with"],
         "utilisation_without": factor * sums["damage_without"],
-        "life_years": _life(years, sums["damage_with"]),
-        "life_years_without": _life(years, sums["damage_without"]),
+        "life_years": _life(years, factor * sums["damage_with"]),
+        "life_years_without": _life(years, factor * sums["damage_without"]),
         "stress_range_with": max(float(np.max(part.range_with, initial=0.0)) for part in parts),
         "stress_range_without": max(part.stress_range_without for part in parts),
         "verified": all(part.verified for part in parts),
@@ -51,4 +51,5 @@ def doubts_of_modes(parts: tuple[FatigueDamage, ...]) -> tuple[str, ...]:
 
 
 def _life(years: float, damage: float) -> float:
+    """Years until the damage, design fatigue factor included, is one."""
     return years / damage if damage > 0 else math.inf
