@@ -407,7 +407,7 @@ def _doubts(
         if abs(W - edge) <= _FINE * W and not within.closed(end):
             where = "lower" if end == 0 else "upper"
             doubts.append(
-                f"The worst motion sits at the {where} end of the range, {within.place(edge)}: beyond it grows."
+                f"The worst motion sits at the {where} end of the range, {within.place(edge)}: beyond it may be larger."
             )
     stable = curve.stable_or_limit & np.isfinite(curve.pipe_peak)
     inside = (curve.frequency >= lo) & (curve.frequency <= hi)
