@@ -31,6 +31,7 @@ _MARGIN = 0.1  # share of the linear contraction that must be left
 _WELL_CONDITIONED, _BLIND = 1e6, 1e12  # condition numbers: of eigenvectors that can be trusted, of a norm that cannot
 _SMALLEST = 1e-6  # radius, in sizes of the orbit, that the linear theory alone may claim
 _DIFFERENCE = 1e-5  # of the size of a motion: steps of central differences, of relative error about 1e-7 here
+_FIRST_STEPS = 0.5  # in sizes of the motion: of Newton's method; later ones must shrink
 _ONE = 1e-6  # in sizes of the orbit: states of refined orbits nearer than this are one state
 
 
@@ -151,7 +152,7 @@ def refined(strobe: Stroboscope, state: Floats, multiple: int) -> tuple[Floats, 
     size = orbit_size(strobe, state[None])
     steps = _DIFFERENCE * np.diag(size)
     change = np.inf
-    for _ in range(8):
+    for turn in range(8):
         around = np.concatenate([state[None], state + steps, state - steps])
         turned = strobe.run(around, multiple, tolerance=1e-12)
         if np.any(turned.codes):
@@ -166,7 +167,7 @@ def refined(strobe: Stroboscope, state: Floats, multiple: int) -> tuple[Floats, 
         state = state - step
         if change < 1e-9:
             return state, Phi
-        if not change < max(0.5, 2 * last):
+        if not change < (_FIRST_STEPS if turn < 2 else last):
             return None
     return None
 

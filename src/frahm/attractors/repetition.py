@@ -10,6 +10,7 @@ HIGHEST_MULTIPLE = 64
 _NEARLY = 0.02  # distance of strobes, in sizes of the motion, that nearly repeat
 _NEARER = 0.5  # of the distance after a smaller number: a motion on a doubled orbit also nearly repeats halfway
 _MOST = 6
+_LESS, _NOTHING = 0.75, 1e-6  # of an earlier distance: what shrinks; in sizes of the motion: what has shrunk to nothing
 
 
 def repeats(strobes: Floats) -> list[list[int]]:
@@ -33,3 +34,18 @@ def _records(distance: Floats) -> list[int]:
             found.append(multiple)
             least = _NEARER * value
     return found[:_MOST]
+
+
+def approaching(strobes: Floats, multiples: list[int]) -> list[int]:
+    """Those numbers of periods after which a motion repeats better and better; on a beat it repeats as well as ever.
+
+    The strobes (K, 2n), over the motion's size, are compared with those so many periods before, early and late.
+    """
+    found = []
+    for multiple in multiples:
+        distance = np.max(np.abs(strobes[multiple:] - strobes[:-multiple]), axis=1)
+        third = len(distance) // 3
+        early, late = float(np.max(distance[:third])), float(np.max(distance[-third:]))
+        if late < max(_LESS * early, _NOTHING):
+            found.append(multiple)
+    return found

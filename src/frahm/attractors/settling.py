@@ -19,7 +19,7 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.attractors.clouds import BELONGS, INSIDE, Cloud, confirmed, drift, looks_stationary
 from frahm.attractors.orbits import Orbit, orbit_at, orbit_size, refined, spectral_radius
-from frahm.attractors.repetition import HIGHEST_MULTIPLE, repeats
+from frahm.attractors.repetition import HIGHEST_MULTIPLE, approaching, repeats
 from frahm.attractors.stroboscope import Stroboscope
 from frahm.errors import Outcome
 
@@ -29,7 +29,9 @@ _GROUP = 4096  # coordinates carried at a time: bounds the memory
 _FAR = 1e9  # times the size of everything seen at the start
 _ATTEMPTS = 8  # motions per call that may be tried as evidence of an attractor that is no orbit
 _AGAIN = 1.5  # times the periods at which it was tried: when a motion may be tried again
-_AT_A_TIME = 24  # motions whose orbit is looked for after every block of periods, and at the end on each regular cloud
+_AT_A_TIME = 24  # motions looked at after every block of periods for what they nearly repeat
+_IN_VAIN = 4  # searches for an orbit without result in one round, and at the end on each regular cloud
+_LATER = 1.25  # times the periods after which a round ended in vain: when the next one begins
 _CONSERVATIVE = 1e-9  # rate of contraction, over Omega, that rounding cannot tell from none
 _UNSTABLE = 1.01  # largest multiplier above which differences are enough to say that an orbit is not stable
 UNLABELLED = -1
@@ -72,8 +74,8 @@ class _Nature(enum.IntEnum):
     """What the strobes of a motion have shown so far."""
 
     OPEN = 0
-    ORBIT = 1  # it nearly repeats, and Newton's method finds a stable orbit there
-    BEAT = 2  # it nearly repeats, and there is no such orbit
+    ORBIT = 1  # it repeats better and better, and Newton's method finds a stable orbit there
+    BEAT = 2  # it nearly repeats, and as well as ever
 
 
 @dataclass(eq=False)
@@ -85,12 +87,18 @@ class _Watched:
     nature: np.ndarray
     tried: np.ndarray
     refused: np.ndarray  # periods at which Newton's method last found no orbit
+    no_orbit_before: float = 0.0  # periods; set where a round was in vain
+    no_cloud_before: float = 0.0
 
     def keep(self, left: np.ndarray) -> None:
         """Go on with the motions of the states `left` alone."""
         kept = np.isin(self.active, left)
         self.active, self.history = self.active[kept], self.history[kept]
         self.nature, self.tried, self.refused = self.nature[kept], self.tried[kept], self.refused[kept]
+
+    def now(self, result: Settled) -> int:
+        """Periods after which the motions are."""
+        return int(np.max(result.periods[self.active], initial=0))
 
     def due(self, periods: np.ndarray) -> list[int]:
         """States whose turn to be tried has come; a trial is worth repeating only after half as long again."""
@@ -216,25 +224,32 @@ class Settling:
         return active
 
     def _look_for_orbits(self, result: Settled, watched: _Watched) -> None:
-        """Refine the motions that nearly repeat; what is found and was not known is known from now on."""
-        due = watched.to_refine(result.periods, result.held)
+        """Refine motions that repeat better and better; what is found and was not known is known from now on."""
+        now = watched.now(result)
+        due = watched.to_refine(result.periods, result.held) if now >= watched.no_orbit_before else []
         places = np.flatnonzero(np.isin(watched.active, due))
-        for i, multiples in zip(due, self._repeats(watched.history[places]), strict=True):
+        vain = 0
+        for i, (multiples, nearing) in zip(due, self._repeats(watched.history[places]), strict=True):
             at = watched.place(i)
             if at is None or not multiples:
                 continue
+            if vain == _IN_VAIN:
+                watched.no_orbit_before = _LATER * now
+                return
             known = len(self.known)
-            found = self._orbit_near(watched.history[at], multiples)
-            watched.nature[at] = _Nature.BEAT if found is None else _Nature.ORBIT
+            found = self._orbit_near(watched.history[at], nearing)
+            vain += found is None and bool(nearing)
+            watched.nature[at] = _Nature.ORBIT if found is not None else _Nature.OPEN if nearing else _Nature.BEAT
             watched.tried[at] = 0 if found is None else result.periods[i]  # a beat is for `_look_for_clouds` to try
             watched.refused[at] = result.periods[i] if found is None else 0
             if len(self.known) > known:
                 watched.keep(self._drop_inside_balls(result, watched.active))
 
-    def _repeats(self, strobes: Floats) -> list[list[int]]:
-        """After how many periods each of the motions with these strobes (N, K, 2n) nearly repeats."""
+    def _repeats(self, strobes: Floats) -> list[tuple[list[int], list[int]]]:
+        """After how many periods each of the motions (N, K, 2n) nearly repeats, and after which better and better."""
         sizes = np.array([orbit_size(self.strobe, motion) for motion in strobes])
-        return repeats(strobes / sizes.reshape(len(strobes), 1, strobes.shape[2]))
+        scaled = strobes / sizes.reshape(len(strobes), 1, strobes.shape[2])
+        return [(found, approaching(motion, found)) for motion, found in zip(scaled, repeats(scaled), strict=True)]
 
     def _orbit_near(self, strobes: Floats, multiples: Sequence[int]) -> int | None:
         """Index of the stable orbit that the last of the strobes (K, 2n) refines to, made known if it was not."""
@@ -280,7 +295,8 @@ class Settling:
 
     def _look_for_clouds(self, result: Settled, watched: _Watched) -> None:
         """Try motions that have become stationary as evidence of an attractor that is no orbit."""
-        for i in watched.due(result.periods):
+        now = watched.now(result)
+        for i in watched.due(result.periods) if now >= watched.no_cloud_before else []:
             at = watched.place(i)
             if at is None or result.held[i] != UNLABELLED or watched.nature[at] == _Nature.ORBIT or not self._attempts:
                 continue
@@ -289,12 +305,14 @@ class Settling:
                 continue
             watched.tried[at] = result.periods[i]
             self._attempts -= 1
-            if evidence is None or self._is_known(evidence):
-                continue
-            cloud = confirmed(self.strobe, evidence, self.orbits)
-            if cloud is not None:
-                self.known.append(cloud)
-                self._hold(result, watched)
+            cloud = None
+            if evidence is not None and not self._is_known(evidence):
+                cloud = confirmed(self.strobe, evidence, self.orbits)
+            if cloud is None:
+                watched.no_cloud_before = _LATER * now
+                return
+            self.known.append(cloud)
+            self._hold(result, watched)
 
     def _is_known(self, strobes: Floats) -> bool:
         """Whether strobes (K, 2n), which may be later ones than those of the motion they belong to, are on a cloud."""
@@ -314,7 +332,7 @@ class Settling:
         refused: dict[int, int] = {}  # of motions on each regular cloud, how many approach no orbit
         for at, i in enumerate(watched.active):
             cloud = int(index[at]) if share[at] >= INSIDE and self._is_regular(int(index[at])) else UNLABELLED
-            asked = self.dissipative and refused.get(cloud, 0) < _AT_A_TIME
+            asked = self.dissipative and refused.get(cloud, 0) < _IN_VAIN
             orbit = self._orbit_approached(watched.history[at]) if asked else None
             if orbit is None and cloud != UNLABELLED:
                 refused[cloud] = refused.get(cloud, 0) + 1
@@ -325,7 +343,7 @@ class Settling:
 
     def _orbit_approached(self, strobes: Floats) -> int | None:
         """Index of the stable orbit that a motion with these strobes (K, 2n) nearly repeats and comes nearer to."""
-        index = self._orbit_near(strobes, self._repeats(strobes[None])[0])
+        index = self._orbit_near(strobes, self._repeats(strobes[None])[0][1])
         if index is None:
             return None
         orbit = self.known[index]
