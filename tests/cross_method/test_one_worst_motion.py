@@ -1,6 +1,5 @@
 """One worst motion for members of every size: what is verified holds over a range twice as wide, and in every table."""
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -8,40 +7,60 @@ import pytest
 
 import frahm
 from frahm.analysis import analyse
-from frahm.loads import operating_range
+from frahm.design.tuned import textbook_damper
+from frahm.loads import operating_range, other_modes
 
 CASES = Path(__file__).parents[1] / "cases"
-MEMBERS = ("tube", "table", "chimney", "stiff", "calm")
+MEMBERS = ("tube", "table", "chimney", "stiff", "calm", "brace", "long_tube", "brace 2", "table 2", "long_tube 2")
 RATIO = 0.02
 
 
-def with_device(name, kind):
-    """A member with a damper tuned by Den Hartog's rule, or a cubic sink that is as stiff at a stroke of 0.1 D."""
+def member(name):
+    """A bare member; a number behind its name is that of the mode that governs."""
+    name, *mode = name.split()
     bare = frahm.load_case(CASES / f"{name}.yaml")
-    mass, omega = RATIO * bare.pipe.mass, bare.pipe.frequency / (1 + RATIO)
-    stiffness = mass * omega**2
-    damping = 2 * math.sqrt(3 * RATIO / (8 * (1 + RATIO) ** 3)) * mass * omega
-    law = {"kind": "linear", "stiffness": stiffness, "damping": damping}
-    if kind == "sink":
-        law = {"kind": "cubic", "stiffness": stiffness / (0.1 * bare.pipe.diameter) ** 2, "damping": damping}
-    place = {"tube": {"position": 12.0}, "table": {"position": 30.0}}.get(name, {})
-    return frahm.load_case(bare.to_dict() | {"absorbers": [{"mass": mass, "law": law} | place]})
+    return bare.with_pipe(governing_mode=int(mode[0])) if mode else bare
+
+
+def with_device(name, kind):
+    """A member with a damper tuned for equal peaks, or a cubic sink that is as stiff at a stroke of 0.1 D."""
+    bare = member(name)
+    tuned = textbook_damper(bare, RATIO)
+    if kind == "tuned":
+        return tuned
+    law = tuned.absorbers[0].law
+    cubic = {"kind": "cubic", "stiffness": law.stiffness / (0.1 * bare.pipe.diameter) ** 2, "damping": law.damping}
+    data = tuned.to_dict()
+    data["absorbers"][0]["law"] = cubic
+    return frahm.load_case(data)
+
+
+def largest_over(case, width):
+    """The largest stable periodic response of each mode over its range made wider."""
+    ranges = [(case, operating_range(case)), *other_modes(case)]
+    curves = [frahm.frequency_response(part, wind=within.widened(width).wind) for part, within in ranges]
+    return max(float(np.max(curve.pipe_peak[curve.stable])) for curve in curves)
 
 
 @pytest.mark.parametrize("kind", ["tuned", "sink"])
 @pytest.mark.parametrize("name", MEMBERS)
 def test_a_verified_worst_holds_over_a_range_twice_as_wide(name, kind):
     case = with_device(name, kind)
-    worst, within = frahm.worst_case(case, samples=6), operating_range(case)
-    lo, hi = within.widened(1.0).wind
-    curve = frahm.frequency_response(case, wind=(lo, hi))
-    largest = float(np.max(curve.pipe_peak[curve.stable]))
+    worst = frahm.worst_case(case, samples=6)
     assert worst.verified, worst.unverified
-    assert worst.pipe_peak >= 0.98 * largest
+    assert worst.pipe_peak >= 0.98 * largest_over(case, 1.0)
     assert worst.motion.pipe_peak == max(
         attractor.pipe_peak for part in (worst, *worst.others) for survey in part.surveys for attractor in survey
         if not attractor.basin_fraction < part.min_basin  # an unknown share counts
     )  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["jacket-pipe", "jacket-pipe-elastic"])
+def test_the_pipe_of_the_paper_holds_over_a_window_twice_as_wide(name):
+    worst = frahm.worst_case(name, samples=12)
+    curve = frahm.frequency_response(name, detuning=(-0.8, 0.8))
+    assert worst.verified, worst.unverified
+    assert worst.pipe_peak >= 0.98 * float(np.max(curve.pipe_peak[curve.stable]))
 
 
 @pytest.mark.parametrize(("name", "kind"), [("stiff", "tuned"), ("calm", "sink")])
