@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from frahm.harmonic_balance.branches import Search, Track
 from frahm.harmonic_balance.describing import PER_DECADE
 from frahm.harmonic_balance.follow import CLOSED, LEFT
+from frahm.harmonic_balance.search import Search, Track
 
 
 def inventory_text(search: Search) -> str:

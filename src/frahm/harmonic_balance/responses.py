@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from frahm.arrays import Complexes, Floats, frozen
-from frahm.harmonic_balance.branches import Search, Track, begin, find_branches
+from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import unstable_count
 from frahm.harmonic_balance.floquet import monodromy, variation_of
@@ -19,6 +19,7 @@ from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic
 from frahm.harmonic_balance.linear import check_rest, is_linear, linear_exponents, linear_response
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of
+from frahm.harmonic_balance.search import Search, Track, begin
 from frahm.systems import System
 
 _NEIGHBOURHOOD = 0.12

@@ -1,7 +1,7 @@
 """How many first-harmonic roots there are over a window of frequencies, and where more of them nearly appear.
 
 Branches start from these roots, so a detached curve is met only where a frequency inside its range is looked at. With
-one cubic spring the number of roots is known in closed form. With any other law of one element it is counted here on
+one cubic spring the number of roots is known in closed form. With any other law it is counted here on
 a dense grid of amplitudes: |S + N(a)| a passes |F| once for every root, and comes near where two are about to appear.
 """
 
@@ -44,11 +44,10 @@ def table_counts(pb: Problem, table: Table, W: Floats, S: Complexes, F: Complexe
 
     S and F (w,) are stiffness and force at the first harmonic.
     """
-    d = float(pb.directions[0, 0])
     before, after = (np.full(table.amplitude.size, -1) for _ in range(2))
     i, j = table.links.T
     after[i], before[j] = j, i
-    N: Complexes = (d * d * table.stiffness[None, :]).astype(complex)
+    N: Complexes = table.stiffness[None, :].astype(complex)
     if pb.rates:
         # the stiffness of friction is a function of a W over a: one table serves all frequencies
         speeds = np.geomspace(table.amplitude.min() * W[0], table.amplitude.max() * W[-1], _FRICTION_POINTS)
@@ -56,8 +55,8 @@ def table_counts(pb: Problem, table: Table, W: Floats, S: Complexes, F: Complexe
         friction_stiffness(pb, speeds, 1.0, unit)
         at = np.log(table.amplitude[None, :] * W[:, None])
         force = np.interp(at, np.log(speeds), unit * speeds)
-        N = np.asarray(N + 1j * d * d * force / table.amplitude)
-    return _counts(S, F, table.amplitude / abs(d), N, before, after)
+        N = np.asarray(N + 1j * force / table.amplitude)
+    return _counts(S, F, table.amplitude, N, before, after)
 
 
 def polynomial_counts(e: Floats, S: Complexes, F: Complexes) -> tuple[np.ndarray, Floats]:

@@ -17,11 +17,11 @@ import numpy as np
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import Problem, unknowns
+from frahm.harmonic_balance.condensation import Problem, stiffness_at, unknowns
 from frahm.harmonic_balance.describing import Table, amplitude_table, outer_balances
 from frahm.harmonic_balance.kernels import stiffness
 from frahm.harmonic_balance.newton import solve_at
-from frahm.polynomials import universal_roots
+from frahm.polynomials import cubic_roots
 
 _STARTS = 48
 _TWO_HARMONIC_STARTS = 16
@@ -34,20 +34,6 @@ class Seed:
 
     frequency: float
     harmonics: dict[int, Complexes]
-
-
-@kernel
-def cubic_roots(S, F, k):
-    """|Z|^2 of all solutions of S Z + k |Z|^2 Z = F, ascending: their number and three values."""
-    D, load = abs(S) ** 2, abs(F) ** 2
-    if k == 0.0 or load == 0.0 or D == 0.0:
-        if D == 0.0 and k != 0.0 and load > 0.0:
-            return 1, np.cbrt(load / (k * k)), math.nan, math.nan
-        return (1 if D > 0.0 else 0), (load / D if D > 0.0 else math.nan), math.nan, math.nan
-    c = math.copysign(1.0, k) * S.real / math.sqrt(D)
-    count, m1, m2, m3 = universal_roots(c, abs(k) * load / D**1.5)
-    scale = math.sqrt(D) / abs(k)
-    return count, m1 * scale, m2 * scale, m3 * scale
 
 
 @kernel
@@ -67,25 +53,15 @@ def count_cubic(pb, Ws, k, counts, excess):
         excess[i] = 4.0 * c * c - 4.0 + h * (32.0 * c * c * c - 36.0 * c - 27.0 * h)
 
 
-def stiffness_at(pb: Problem, k: int, W: float) -> tuple[Complexes, Complexes]:
-    """S (r, r) [N/m] and condensed force (r,) [N] at harmonic k of Omega = W [rad/s]."""
-    r = pb.M11.shape[0]
-    S, dS = np.empty((r, r), complex), np.empty((r, r), complex)
-    f, df = np.empty(r, complex), np.empty(r, complex)
-    stiffness(pb, 1j * k * W, S, dS, f, df)
-    return S, f
-
-
 def spring_polynomial(pb: Problem) -> Floats | None:
-    """Coefficients e_i of k(N) = sum_i e_i N^i, equivalent stiffness at N = |Z|^2, for one odd polynomial element."""
-    if pb.directions.shape != (1, 1) or pb.degree == 0 or not pb.odd:
+    """Coefficients e_i of k(N) = sum_i e_i N^i, equivalent stiffness at N = |U|^2, of the odd polynomials at u = U."""
+    if pb.directions.shape[0] != 1 or pb.degree == 0 or not pb.odd:
         return None
-    start, count = pb.codes[0, 1], pb.codes[0, 2]
-    c = pb.table[start + 1 : start + 1 + count][::-1]  # c_1 ... c_p
-    e = np.zeros((count + 1) // 2)
-    for k in range(1, count + 1, 2):
-        e[(k - 1) // 2] = c[k - 1] * math.comb(k, (k - 1) // 2) / 2 ** (k - 1)
-    e *= pb.directions[0, 0] ** 2 ** np.arange(1, e.size + 1)
+    e = np.zeros((int(np.max(pb.codes[:, 2])) + 1) // 2)
+    for (_, start, count), d in zip(pb.codes, pb.directions[0], strict=True):
+        c = pb.table[start + 1 : start + 1 + count][::-1]  # c_1 ... c_p
+        for k in range(1, count + 1, 2):
+            e[(k - 1) // 2] += c[k - 1] * math.comb(k, (k - 1) // 2) / 2 ** (k - 1) * d ** (k + 1)
     return e[: max(1, int(np.max(np.nonzero(e)[0], initial=0)) + 1)]
 
 
@@ -225,7 +201,7 @@ class Seeder:
             for mean, u in self.table.roots(pb, W, complex(S[0, 0]), complex(F[0])):
                 still = {} if pb.odd and mean == 0 else {0: np.array([mean])}
                 seeds.append(Seed(W, {**still, 1: np.array([u])}))
-        if pb.directions.shape == (1, 1):
+        if pb.directions.shape[0] == 1:
             return seeds
         if first_only:
             S, F = stiffness_at(pb, 1, W)
@@ -237,15 +213,14 @@ class Seeder:
 def seeder_for(pb: Problem, window: Floats) -> Seeder:
     """Seeder of a condensed problem for frequencies spread over a window [rad/s]."""
     spring = spring_polynomial(pb)
-    if pb.directions.shape != (1, 1):
+    if pb.directions.shape[0] != 1:
         return Seeder(pb, None, None, pb.odd and _may_buckle(pb))
     rest = float(stiffness_at(pb, 0, 1.0)[0][0, 0].real)
     if abs(rest) < _ROUNDING * abs(stiffness_at(pb, 1, float(window[0]))[0][0, 0]):
         rest = 0.0  # of an absorber that nothing but its nonlinear spring holds: its rounding makes no two wells
-    d = float(pb.directions[0, 0])
     if spring is not None and rest >= 0 and np.all(spring >= 0):
         return Seeder(pb, spring, None, False)
-    buckled = bool(pb.odd and outer_balances(pb, rest / d**2) > 0)
+    buckled = bool(pb.odd and outer_balances(pb, rest) > 0)
     if spring is not None and not buckled:
         return Seeder(pb, spring, None, False)
     parts = [stiffness_at(pb, 1, float(W)) for W in window]
