@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from frahm.harmonic_balance.alike import moving_alike, seeds_alike
 from frahm.harmonic_balance.asymmetric import asymmetric_branches, buckled_branches
 from frahm.harmonic_balance.completing import complete
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import Point
 from frahm.harmonic_balance.following import followed, lies_on
-from frahm.harmonic_balance.search import Search, Track, connected
+from frahm.harmonic_balance.search import Search, Track, begin, connected
 from frahm.harmonic_balance.seeds import Seed, almost_seeds, two_harmonic_seeds
 from frahm.harmonic_balance.starts import seed_frequencies, solve_seed
 
@@ -22,15 +23,19 @@ _STRONG_THIRD = 0.12  # third harmonic beside the first from where on both are s
 _CROSSING = 5e-3  # of a point: how near a branch passes that crosses another one there
 
 
-def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
+def find_branches(search: Search, asymmetric: bool = True, at: float | None = None) -> list[Track]:
     """Every branch the seeds lead to, each followed once; the one with the smallest response at `lo` comes first.
 
-    Branches with even harmonics that leave odd ones are followed only if `asymmetric`.
+    Branches with even harmonics that leave odd ones are followed only if `asymmetric`. With `at`, starts are looked for
+    at that frequency [rad/s], too.
     """
     odd, seeder = search.problem.odd, search.seeder
     tracks: list[Track] = []
     complete_at, beside, almost = seed_frequencies(search)
-    seeds = [seed for W in complete_at for seed in seeder.at(float(W), search.x_scale)]
+    if at is not None:
+        complete_at = np.append(at, complete_at)
+    seeds = _seeds_of_motions_alike(search, asymmetric, at)
+    seeds += [seed for W in complete_at for seed in seeder.at(float(W), search.x_scale)]
     seeds += [seed for W in beside for seed in seeder.at(float(W), search.x_scale) if 3 in seed.harmonics]
     if seeder.spring is not None:
         seeds += [seed for W in almost for seed in almost_seeds(search.problem, float(W), seeder.spring)]
@@ -52,6 +57,16 @@ def find_branches(search: Search, asymmetric: bool = True) -> list[Track]:
     tracks = sorted(tracks, key=lambda track: _response_at(track, search.lo))
     _join_beyond(search, tracks)
     return tracks
+
+
+def _seeds_of_motions_alike(search: Search, asymmetric: bool, at: float | None) -> list[Seed]:
+    """Starts from all branches of the smaller system in which equal absorbers move alike."""
+    system = moving_alike(search.system)
+    if system is None:
+        return []
+    smaller = begin(system, search.lo, search.hi, search.harmonics, search.problem.forcing)
+    smaller = replace(smaller, budget=search.budget)
+    return seeds_alike(search, smaller, find_branches(smaller, asymmetric, at))
 
 
 def _follow_new(search: Search, seeds: list[Seed], tracks: list[Track]) -> None:

@@ -6,6 +6,8 @@ from frahm.harmonic_balance.describing import PER_DECADE
 from frahm.harmonic_balance.follow import CLOSED, LEFT
 from frahm.harmonic_balance.search import Search, Track
 
+_SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
+
 
 def inventory_text(search: Search) -> str:
     """What the search for branches proves and what it only searches."""
@@ -18,8 +20,12 @@ def inventory_text(search: Search) -> str:
             start += f"; about other means than 0 from {dense}"
     elif seeder.table is not None:
         start = dense
+    elif seeder.shared is not None:
+        start = (
+            "all first-harmonic solutions, near misses of further ones, and motions in which equal absorbers move alike"
+        )
     else:
-        start = "first-harmonic solutions searched from a fixed spread of starts (not proven complete)"
+        start = _SPREAD
         if search.problem.odd and not seeder.buckled:
             start += ", about the mean 0 only"
     return (
@@ -27,6 +33,22 @@ def inventory_text(search: Search) -> str:
         " (period doublings are located, the doubled motions not followed), and responses without any first-harmonic"
         " counterpart."
     )
+
+
+def not_proven(search: Search) -> tuple[str, ...]:
+    """A sentence where responses were searched without proof that all were found."""
+    seeder = search.seeder
+    if search.problem.directions.shape[0] == 1:
+        return ()
+    if seeder.shared is None:
+        return (f"With several absorbers there may be further responses: {_SPREAD}.",)
+    if seeder.doubtful:
+        lo, hi = min(seeder.doubtful), max(seeder.doubtful)
+        return (
+            f"There may be further responses: at {len(seeder.doubtful)} frequencies between {lo:.6g} and {hi:.6g} rad/s"
+            " the first-harmonic solutions found do not add up to the degree of their equations.",
+        )
+    return ()
 
 
 def unfinished(tracks: list[Track]) -> list[str]:

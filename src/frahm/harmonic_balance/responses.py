@@ -14,7 +14,7 @@ from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import unstable_count
 from frahm.harmonic_balance.floquet import monodromy, variation_of
 from frahm.harmonic_balance.found import Found
-from frahm.harmonic_balance.inventory import inventory_text, unfinished
+from frahm.harmonic_balance.inventory import inventory_text, not_proven, unfinished
 from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic
 from frahm.harmonic_balance.linear import check_rest, is_linear, linear_exponents, linear_response
 from frahm.harmonic_balance.newton import solve_at
@@ -89,9 +89,9 @@ def periodic_responses_of(system: System, frequency: float, harmonics: int | Non
     if is_linear(system) or not np.any(system.forcing):
         return Found([_linear(system, frequency)], "A linear system has one periodic response.")
     search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
-    tracks = find_branches(search)
+    tracks = find_branches(search, at=frequency)
     found = responses_on(search, tracks, frequency)
-    return Found(found, inventory_text(search), (*search.budget.sentences(), *unfinished(tracks)))
+    return Found(found, inventory_text(search), (*search.budget.sentences(), *not_proven(search), *unfinished(tracks)))
 
 
 def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> list[PeriodicResponse]:

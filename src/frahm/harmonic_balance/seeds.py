@@ -10,7 +10,7 @@ spread set of starts. The result says which.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from frahm.harmonic_balance.condensation import Problem, stiffness_at, unknowns
 from frahm.harmonic_balance.describing import Table, amplitude_table, outer_balances
 from frahm.harmonic_balance.kernels import stiffness
 from frahm.harmonic_balance.newton import solve_at
+from frahm.harmonic_balance.shared_drive import shared_stiffnesses, solutions_at
 from frahm.polynomials import cubic_roots
 
 _STARTS = 48
@@ -188,6 +189,8 @@ class Seeder:
     spring: Floats | None  # equivalent stiffness of one odd polynomial element, see `spring_polynomial`
     table: Table | None  # of one element otherwise, or of its motions about other means
     buckled: bool  # whether an odd system has other equilibria, wells or tops, about which it may respond
+    shared: Floats | None = None  # cubic stiffnesses of several coordinates that one motion drives, see `shared_drive`
+    doubtful: set[float] = field(default_factory=set)  # frequencies at which not all of their solutions were found
 
     def at(self, W: float, scale: float, first_only: bool = False) -> list[Seed]:
         """All starts at Omega = W [rad/s]; `first_only` leaves out free third harmonics and searches."""
@@ -206,15 +209,21 @@ class Seeder:
         if first_only:
             S, F = stiffness_at(pb, 1, W)
             return [Seed(W, {1: np.asarray(np.linalg.solve(S, F), dtype=complex)})]
-        seeds = searched_seeds(pb, W, scale, pb.odd)
+        seeds = self._shared_seeds(W) if self.shared is not None else searched_seeds(pb, W, scale, pb.odd)
         return seeds + searched_seeds(pb, W, scale, False) if self.buckled else seeds
+
+    def _shared_seeds(self, W: float) -> list[Seed]:
+        found = solutions_at(self.problem, W, self.shared)
+        if not found.complete:
+            self.doubtful.add(W)
+        return [Seed(W, {1: u}) for u in (*found.harmonics, *found.almost)]
 
 
 def seeder_for(pb: Problem, window: Floats) -> Seeder:
     """Seeder of a condensed problem for frequencies spread over a window [rad/s]."""
     spring = spring_polynomial(pb)
     if pb.directions.shape[0] != 1:
-        return Seeder(pb, None, None, pb.odd and _may_buckle(pb))
+        return Seeder(pb, None, None, pb.odd and _may_buckle(pb), shared_stiffnesses(pb, window))
     rest = float(stiffness_at(pb, 0, 1.0)[0][0, 0].real)
     if abs(rest) < _ROUNDING * abs(stiffness_at(pb, 1, float(window[0]))[0][0, 0]):
         rest = 0.0  # of an absorber that nothing but its nonlinear spring holds: its rounding makes no two wells

@@ -57,6 +57,14 @@ class Solutions:
     complete: bool
 
 
+def shared_stiffnesses(pb: Problem, window: Floats) -> Floats | None:
+    """k_i (r,) where `solutions_at` finds all first-harmonic solutions at frequencies of a window; None elsewhere."""
+    k = cubic_stiffnesses(pb)
+    if k is None or any(shared_drive(*stiffness_at(pb, 1, float(W))) is None for W in window):
+        return None
+    return k
+
+
 def cubic_stiffnesses(pb: Problem) -> Floats | None:
     """k_i (r,) of cubic elements each of which moves with one coordinate; None for any other elements."""
     if pb.degree == 0 or not pb.odd or np.any(np.count_nonzero(pb.directions, axis=0) != 1):
@@ -83,12 +91,12 @@ def shared_drive(S: Complexes, F: Complexes) -> Complexes | None:
     return b if np.all(misfit <= _COUPLED * np.max(np.abs(S))) else None
 
 
-def solutions_at(pb: Problem, W: float, k: Floats) -> Solutions | None:
-    """All first-harmonic solutions at Omega = W [rad/s]; None if more than one motion couples the coordinates."""
+def solutions_at(pb: Problem, W: float, k: Floats) -> Solutions:
+    """All first-harmonic solutions at Omega = W [rad/s] of coordinates with the cubic stiffnesses k (r,)."""
     S, F = stiffness_at(pb, 1, W)
     b = shared_drive(S, F)
     if b is None:
-        return None
+        return Solutions(np.empty((0, F.size), complex), np.empty((0, F.size), complex), False)
     found, almost = np.empty((0, F.size), complex), np.empty((0, F.size), complex)
     for points in _POINTS:
         found, almost = _roots(np.diag(S) - F * b, F, b, k, points)
@@ -127,7 +135,7 @@ def _arcs(p: Complexes, F: Complexes, b: Complexes, k: Floats) -> Iterator[_Arc]
     edges = [0.0, *sorted(y for i in range(k.size) for y in _turning_drives(p[i], F[i], k[i]))]
     edges.append(_largest_drive(p, F, b, k, edges[-1]))
     for lo, hi in itertools.pairwise(edges):
-        if hi <= lo:
+        if hi - lo <= _SAME * hi:  # of equal elements: what lies between is rounding
             continue
         middle = 0.5 * (lo + hi)
         counts = np.array([cubic_roots(p[i], F[i] * middle, k[i])[0] for i in range(k.size)])

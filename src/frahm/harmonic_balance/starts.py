@@ -16,6 +16,7 @@ from frahm.harmonic_balance.seeds import Seed, count_cubic, stiffness_at
 _WORST = 0.05  # truncation with stops or friction beyond which a solution of the harmonics is none of the equations
 _SEED_FREQUENCIES = 17
 _GRID = 401
+_SHARED_GRID = 161  # where one frequency takes several cubics: a detached curve of a smaller range can be missed
 _BAND = 0.65  # ln(hi/lo) of the widest window these numbers of frequencies are for: wider ones take more of them
 _SHORT_RANGE, _AROUND = 16, 9  # points of the grid in a short range of three roots; frequencies looked at around it
 
@@ -33,6 +34,8 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
     e, table = seeder.spring, seeder.table
     cubic = e is not None and e.size == 2 and e[0] == 0 and not seeder.buckled
     dense = np.linspace(search.lo, search.hi, 3 * seeds)
+    if seeder.shared is not None:
+        return _where_solutions_change(search, spread, math.ceil(_SHARED_GRID * bands)), np.empty(0), np.empty(0)
     if pb.directions.shape[0] != 1 or (e is None and table is None):
         return dense, np.empty(0), np.empty(0)
     grid = np.linspace(search.lo, search.hi, points)
@@ -61,6 +64,14 @@ def seed_frequencies(search: Search) -> tuple[Floats, Floats, Floats]:
     if cubic:
         return np.unique(np.concatenate([spread[[0, -1]], middles])), spread, near
     return np.unique(np.concatenate([dense, middles])), np.empty(0), near
+
+
+def _where_solutions_change(search: Search, spread: Floats, points: int) -> Floats:
+    """Frequencies spread over the window, and one of every range in which the number of solutions is the same."""
+    grid = np.linspace(search.lo, search.hi, points)
+    counts = np.array([len(search.seeder.at(float(W), search.x_scale)) for W in grid])
+    runs = np.split(grid, np.flatnonzero(np.diff(counts)) + 1)
+    return np.unique(np.concatenate([spread, [run[len(run) // 2] for run in runs]]))
 
 
 def solve_seed(search: Search, seed: Seed, odd: bool) -> tuple[Floats, int] | None:
