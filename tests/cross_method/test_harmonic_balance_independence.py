@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import frahm
-from frahm.harmonic_balance import begin, branches, find_branches
+from frahm.harmonic_balance import begin, branches, find_branches, following, starts
 from frahm.harmonic_balance.events import unstable_count
+from frahm.harmonic_balance.starts import Starts
 from frahm.systems import with_parameters
 from searching import at_most
 
@@ -81,10 +82,15 @@ def test_one_window_or_two_halves(system, split):
 @given(systems())
 @quickly
 def test_from_which_end_the_search_starts(system):
-    seeds = branches.seed_frequencies
+    original = branches.starts_of
+
+    def reversed_starts(search):
+        found = original(search)
+        return Starts(found.everywhere[::-1], found.third[::-1], found.extremes[::-1])
+
     expected = frahm.frequency_response(system, frequency=(LO, HI))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(branches, "seed_frequencies", lambda search: tuple(W[::-1] for W in seeds(search)))
+        patch.setattr(branches, "starts_of", reversed_starts)
         found = frahm.frequency_response(system, frequency=(LO, HI))
     assert_same_points(points_of(found), points_of(expected))
     assert_same_responses([found], [expected])
@@ -93,14 +99,20 @@ def test_from_which_end_the_search_starts(system):
 
 @pytest.mark.parametrize(
     "setting",
-    [("_LONGEST", 0.007), ("_LONGEST", 0.031), ("_SEED_FREQUENCIES", 80), ("_SEED_FREQUENCIES", 81), ("_GRID", 282)],
+    [
+        (following, "_LONGEST", 0.007),
+        (following, "_LONGEST", 0.031),
+        (starts, "_SEED_FREQUENCIES", 80),
+        (starts, "_SEED_FREQUENCIES", 81),
+        (starts, "_GRID", 282),
+    ],
 )
 @given(system=systems())
 @at_most(6, more=4)
 def test_steps_and_grids(setting, system):
     expected = frahm.frequency_response(system, frequency=(LO, HI))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(branches, *setting)
+        patch.setattr(*setting)
         found = frahm.frequency_response(system, frequency=(LO, HI))
     assert_same_points(points_of(found), points_of(expected))
     assert_same_responses([found], [expected])

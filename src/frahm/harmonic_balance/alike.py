@@ -28,13 +28,9 @@ def moving_alike(system: System) -> System | None:
     P = np.zeros((system.size, len(groups)))
     for column, group in enumerate(groups):
         P[group, column] = 1.0
-    return System(
-        *(P.T @ matrix @ P for matrix in (system.mass, system.damping, system.stiffness)),
-        P.T @ system.forcing,
-        [Element(P.T @ element.direction, element.law) for element in system.elements],
-        P.T @ system.output,
-        name=system.name,
-    )
+    M, C, K = (P.T @ matrix @ P for matrix in (system.mass, system.damping, system.stiffness))
+    elements = [Element(P.T @ element.direction, element.law) for element in system.elements]
+    return System(M, C, K, P.T @ system.forcing, elements, P.T @ system.output, name=system.name)
 
 
 def seeds_alike(search: Search, alike: Search, tracks: list[Track]) -> list[Seed]:
@@ -98,5 +94,5 @@ def _equal(a: Floats, b: Floats) -> bool:
 
 
 def _same_law(a: Law, b: Law) -> bool:
-    codes, table = zip(*(pack_laws([law]) for law in (a, b)), strict=True)
-    return bool(np.array_equal(*codes)) and bool(np.allclose(*table, rtol=_EQUAL, atol=0.0))
+    (codes, table), (others, numbers) = pack_laws([a]), pack_laws([b])
+    return bool(np.array_equal(codes, others)) and bool(np.allclose(table, numbers, rtol=_EQUAL, atol=0.0))

@@ -9,13 +9,14 @@ import numpy as np
 
 from frahm.harmonic_balance.alike import moving_alike, seeds_alike
 from frahm.harmonic_balance.asymmetric import asymmetric_branches, buckled_branches
+from frahm.harmonic_balance.births import seeds_beside
 from frahm.harmonic_balance.completing import complete
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import Point
 from frahm.harmonic_balance.following import followed, lies_on
 from frahm.harmonic_balance.search import Search, Track, begin, connected
-from frahm.harmonic_balance.seeds import Seed, almost_seeds, two_harmonic_seeds
-from frahm.harmonic_balance.starts import seed_frequencies, solve_seed
+from frahm.harmonic_balance.seeds import Seed, two_harmonic_seeds
+from frahm.harmonic_balance.starts import solve_seed, starts_of
 
 _BEYOND = 12  # windows beyond the upper edge in which branches that leave it are followed
 _STRONG_FREQUENCIES = 9
@@ -31,16 +32,12 @@ def find_branches(search: Search, asymmetric: bool = True, at: float | None = No
     """
     odd, seeder = search.problem.odd, search.seeder
     tracks: list[Track] = []
-    complete_at, beside, almost = seed_frequencies(search)
-    if at is not None:
-        complete_at = np.append(at, complete_at)
+    starts = starts_of(search)
+    everywhere = starts.everywhere if at is None else np.append(at, starts.everywhere)
     seeds = _seeds_of_motions_alike(search, asymmetric, at)
-    seeds += [seed for W in complete_at for seed in seeder.at(float(W), search.x_scale)]
-    seeds += [seed for W in beside for seed in seeder.at(float(W), search.x_scale) if 3 in seed.harmonics]
-    if seeder.spring is not None:
-        seeds += [seed for W in almost for seed in almost_seeds(search.problem, float(W), seeder.spring)]
-    if seeder.table is not None:
-        seeds += [seed for W in almost for seed in seeder.at(float(W), search.x_scale)]
+    seeds += [seed for W in everywhere for seed in seeder.at(float(W), search.x_scale)]
+    seeds += [seed for W in starts.third for seed in seeder.at(float(W), search.x_scale) if 3 in seed.harmonics]
+    seeds += [seed for extreme in starts.extremes for seed in seeds_beside(search, extreme)]
     about_others = [seed for seed in seeds if odd and 0 in seed.harmonics]
     _follow_new(search, [seed for seed in seeds if not odd or 0 not in seed.harmonics], tracks)
     if seeder.spring is not None and third_harmonic(search, tracks) > _STRONG_THIRD:

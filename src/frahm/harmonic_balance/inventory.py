@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from frahm.harmonic_balance.births import MARGIN
 from frahm.harmonic_balance.describing import PER_DECADE
 from frahm.harmonic_balance.follow import CLOSED, LEFT
 from frahm.harmonic_balance.search import Search, Track
@@ -14,16 +15,13 @@ def inventory_text(search: Search) -> str:
     seeder, start = search.seeder, ""
     dense = f"first-harmonic roots searched on a dense grid of {PER_DECADE} amplitudes a decade (not proven complete)"
     if seeder.spring is not None:
-        start = "all first-harmonic roots, with every free third harmonic beside them, and near misses of further roots"
-        start += " (a detached curve within about 0.1 % of its birth can be missed)"
+        start = "all first-harmonic roots, with every free third harmonic beside them, and births of detached curves"
         if seeder.table is not None:
             start += f"; about other means than 0 from {dense}"
     elif seeder.table is not None:
         start = dense
     elif seeder.shared is not None:
-        start = (
-            "all first-harmonic solutions, near misses of further ones, and motions in which equal absorbers move alike"
-        )
+        start = "all first-harmonic solutions, near misses of further ones, and motions of equal absorbers alike"
     else:
         start = _SPREAD
         if search.problem.odd and not seeder.buckled:
@@ -37,18 +35,22 @@ def inventory_text(search: Search) -> str:
 
 def not_proven(search: Search) -> tuple[str, ...]:
     """A sentence where responses were searched without proof that all were found."""
-    seeder = search.seeder
-    if search.problem.directions.shape[0] == 1:
-        return ()
-    if seeder.shared is None:
-        return (f"With several absorbers there may be further responses: {_SPREAD}.",)
+    seeder, found = search.seeder, []
+    for W in search.undecided:
+        if search.lo <= W <= search.hi:
+            found.append(
+                f"Whether a small detached curve exists near {W:.6g} rad/s could not be told: it is born within"
+                f" {MARGIN:.0e} of the force, or its birth could not be located."
+            )
+    if search.problem.directions.shape[0] > 1 and (seeder.shared is None or seeder.buckled):
+        found.append(f"With several absorbers there may be further responses: {_SPREAD}.")
     if seeder.doubtful:
         lo, hi = min(seeder.doubtful), max(seeder.doubtful)
-        return (
+        found.append(
             f"There may be further responses: at {len(seeder.doubtful)} frequencies between {lo:.6g} and {hi:.6g} rad/s"
-            " the first-harmonic solutions found do not add up to the degree of their equations.",
+            " the first-harmonic solutions found do not add up to the degree of their equations."
         )
-    return ()
+    return tuple(found)
 
 
 def unfinished(tracks: list[Track]) -> list[str]:

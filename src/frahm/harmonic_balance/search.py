@@ -19,7 +19,7 @@ from frahm.systems import System
 GOAL = 1e-8
 _ROUGH_GOAL = 1e-6  # with stops or friction, whose force harmonics fall off slowly
 _AUTO_HARMONICS = 101
-_SEED_FREQUENCIES = 17
+_SCALE_FREQUENCIES = 17
 
 
 @dataclass
@@ -72,6 +72,7 @@ class Search:
     w_scale: float
     harmonics: int | None
     budget: Budget = field(default_factory=Budget)
+    undecided: list[float] = field(default_factory=list)  # Omega near which a detached curve may exist or not
 
     @property
     def highest(self) -> int:
@@ -98,7 +99,7 @@ class Search:
 def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None) -> Search:
     """Condense the system and set the scales of the search; `forcing` is a factor over Omega, see `forcing_factor`."""
     pb = condense(system, forcing)
-    grid = np.linspace(lo, hi, _SEED_FREQUENCIES)
+    grid = np.linspace(lo, hi, _SCALE_FREQUENCIES)
     largest = 0.0
     seeder = seeder_for(pb, grid)
     for W in grid:

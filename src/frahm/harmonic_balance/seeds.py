@@ -16,10 +16,8 @@ import numpy as np
 
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Complexes, Floats
-from frahm.compiled import kernel
 from frahm.harmonic_balance.condensation import Problem, stiffness_at, unknowns
 from frahm.harmonic_balance.describing import Table, amplitude_table, outer_balances
-from frahm.harmonic_balance.kernels import stiffness
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.shared_drive import shared_stiffnesses, solutions_at
 from frahm.polynomials import cubic_roots
@@ -37,21 +35,22 @@ class Seed:
     harmonics: dict[int, Complexes]
 
 
-@kernel
-def count_cubic(pb, Ws, k, counts, excess):
-    """Number of first-harmonic roots at every frequency and, where there is one, how far three are away.
+@dataclass(frozen=True)
+class Extreme:
+    """A first-harmonic motion at which the force it needs is extreme over amplitude and Omega, see `births`.
 
-    `excess` is the discriminant of the cubic, positive where there are three roots.
+    sign is +1 for a minimum and -1 for a maximum; `odd` says whether it is followed without even harmonics.
     """
-    S, dS = np.empty((1, 1), np.complex128), np.empty((1, 1), np.complex128)
-    f, df = np.empty(1, np.complex128), np.empty(1, np.complex128)
-    for i in range(Ws.size):
-        stiffness(pb, 1j * Ws[i], S, dS, f, df)
-        counts[i] = cubic_roots(S[0, 0], f[0], k)[0]
-        D = abs(S[0, 0]) ** 2
-        c = math.copysign(1.0, k) * S[0, 0].real / math.sqrt(D)
-        h = abs(k) * abs(f[0]) ** 2 / D**1.5
-        excess[i] = 4.0 * c * c - 4.0 + h * (32.0 * c * c * c - 36.0 * c - 27.0 * h)
+
+    frequency: float
+    harmonics: dict[int, Complexes]
+    sign: int
+    odd: bool
+
+    @property
+    def largest(self) -> int:
+        """Coordinate with the largest first harmonic."""
+        return int(np.argmax(np.abs(self.harmonics[1])))
 
 
 def spring_polynomial(pb: Problem) -> Floats | None:
@@ -86,39 +85,11 @@ def single_element_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
     for N in amplitude_roots(S[0, 0], F[0], e):
         Z = F[0] / (S[0, 0] + np.polynomial.polynomial.polyval(N, e))
         seeds.append(Seed(W, {1: np.array([Z])}))
-        seeds += [Seed(W, {1: np.array([Z]), 3: np.array([Z3])}) for Z3 in _third_harmonics(S3[0, 0], Z, e)]
+        seeds += [Seed(W, {1: np.array([Z]), 3: np.array([Z3])}) for Z3 in third_harmonics(S3[0, 0], Z, e)]
     return seeds
 
 
-def almost_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
-    """Starts where the first harmonic nearly has a pair of further roots: the exact equations may have them.
-
-    They lie around the turning points of |S + k(N)|^2 N, or its point of inflection.
-    """
-    S, F = stiffness_at(pb, 1, W)
-    seeds = []
-    for N in _turning_amplitudes(complex(S[0, 0]), e):
-        Z = F[0] / (S[0, 0] + np.polynomial.polynomial.polyval(N, e))
-        seeds.append(Seed(W, {1: np.array([Z * math.sqrt(N) / abs(Z)])}))
-    return seeds
-
-
-def _turning_amplitudes(S: complex, e: Floats) -> set[float]:
-    """|Z|^2 at and beside the turning points of the load, or where they are about to appear."""
-    if e.size == 2 and e[0] == 0:
-        size, k = abs(S), e[1]
-        c = math.copysign(1.0, k) * S.real / size
-        spread = math.sqrt(max(4 * c * c - 3, 0.0))
-        found = {(-2 * c + part * spread) / 3 * size / abs(k) for part in (-1.2, -0.8, 0.0, 0.8, 1.2)}
-        return {N for N in found if N > 0}
-    real = np.polynomial.Polynomial([S.real + e[0], *e[1:]])
-    load = np.polynomial.Polynomial([0, 1]) * (real * real + S.imag**2)
-    turns = load.deriv().trim().roots()
-    turns = turns[(turns.real > 0) & (np.abs(turns.imag) < 0.5 * np.abs(turns.real))]
-    return {float(share * N) for N in turns.real for share in (0.85, 1.0, 1.15)}
-
-
-def _third_harmonics(S3: complex, Z: complex, e: Floats) -> list[complex]:
+def third_harmonics(S3: complex, Z: complex, e: Floats) -> list[complex]:
     """Third harmonics that a cubic spring admits beside Z, when there is more than the one that vanishes with it."""
     if e.size < 2:
         return []
@@ -209,11 +180,11 @@ class Seeder:
         if first_only:
             S, F = stiffness_at(pb, 1, W)
             return [Seed(W, {1: np.asarray(np.linalg.solve(S, F), dtype=complex)})]
-        seeds = self._shared_seeds(W) if self.shared is not None else searched_seeds(pb, W, scale, pb.odd)
+        seeds = searched_seeds(pb, W, scale, pb.odd) if self.shared is None else self._shared_seeds(W, self.shared)
         return seeds + searched_seeds(pb, W, scale, False) if self.buckled else seeds
 
-    def _shared_seeds(self, W: float) -> list[Seed]:
-        found = solutions_at(self.problem, W, self.shared)
+    def _shared_seeds(self, W: float, k: Floats) -> list[Seed]:
+        found = solutions_at(self.problem, W, k)
         if not found.complete:
             self.doubtful.add(W)
         return [Seed(W, {1: u}) for u in (*found.harmonics, *found.almost)]
