@@ -6,14 +6,18 @@ import numpy as np
 import scipy.linalg
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance.completing import complete
+from frahm.harmonic_balance.completing import complete, described
 from frahm.harmonic_balance.condensation import unknowns
+from frahm.harmonic_balance.events import LocatedEvent, Point
 from frahm.harmonic_balance.following import followed, lies_on, track_of
 from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count
 from frahm.harmonic_balance.newton import correct
 from frahm.harmonic_balance.search import Search, Track
 from frahm.harmonic_balance.seeds import Seed
 from frahm.harmonic_balance.starts import solve_seed
+
+_REACH = 2.0  # steps of a branch within which its end lies of the point where it is born
+_SAME = 1e-7
 
 
 def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> list[Track]:
@@ -28,7 +32,7 @@ def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> li
     births = [(event, point) for event, point in own if event.kind == "branch-point" and point is not None]
     for event, point in births + parent.births:
         ends = [c for t in known + tracks if not t.odd for c in (t.columns[0], t.columns[-1])]
-        if any(np.allclose(c[[0, 4]], event.columns[[0, 4]], rtol=2e-3) for c in ends):
+        if any(np.allclose(c[[0, 4]], event.columns[[0, 4]], rtol=_SAME) for c in ends):
             continue
         start = None if search.budget.reached else _asymmetric_start(search, *point)
         if start is None:
@@ -36,8 +40,62 @@ def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> li
         track = _half_of_pair(search, followed(search, False, *start))
         track.parent = parent
         if complete(search, track) and not any(_is_same(search, track, t) for t in known + tracks if not t.odd):
+            _begin_at_births(search, track, [t for t in known if t.odd])
             tracks.append(track)
     return tracks
+
+
+def _begin_at_births(search: Search, track: Track, odd: list[Track]) -> None:
+    """Put the points at which the symmetry is lost on the ends of a branch that leaves there."""
+    births = [
+        (event, point) for t in odd for event, point in zip(t.events, t.event_points, strict=True)
+        if event.kind == "branch-point" and point is not None
+    ]  # fmt: skip
+    places = [_scaled(search, y, H, True) for _, (y, _, H) in births]
+    for end, beside in ((0, 1), (-1, -2)):
+        a, b = (_scaled(search, track.ys[i], int(track.Hs[i]), False) for i in (end, beside))
+        away = [float(np.linalg.norm(place - a)) for place in places]
+        if away and min(away) < _REACH * float(np.linalg.norm(b - a)):
+            event, point = births[int(np.argmin(away))]
+            _put_at_end(search, track, end, point, event)
+
+
+def _put_at_end(search: Search, track: Track, end: int, birth: Point, event: LocatedEvent) -> None:
+    """Add a symmetric point to an end of an asymmetric branch, which leaves it along its even part."""
+    y, _, H = birth
+    r, size = search.problem.M11.shape[0], search.size(False)
+    n = unknowns(search.problem, H, False)
+    point, tangent = np.zeros(size), np.zeros(size)
+    point[: n + 1] = _with_even(search, y, H)
+    even = track.ys[end, :n].copy().reshape(-1, 2 * r)
+    even[1::2] = 0.0
+    tangent[:n] = even.ravel() / np.linalg.norm(even) * (1.0 if end == 0 else -1.0)
+    at = 0 if end == 0 else len(track.Hs)
+    multipliers = described(search, False, point[None], np.array([H]))[1][0]
+    track.ys, track.ts = np.insert(track.ys, at, point, axis=0), np.insert(track.ts, at, tangent, axis=0)
+    track.Hs = np.insert(track.Hs, at, H)
+    track.truncations = np.insert(track.truncations, at, track.truncations[end])
+    track.columns = np.insert(track.columns, at, event.columns, axis=0)
+    track.multipliers = np.insert(track.multipliers, at, multipliers, axis=0)
+
+
+def _with_even(search: Search, y: Floats, H: int) -> Floats:
+    """A point with odd harmonics only, as one with all harmonics."""
+    r = search.problem.M11.shape[0]
+    odd_n, n = unknowns(search.problem, H, True), unknowns(search.problem, H, False)
+    full = np.zeros(n + 1)
+    for m in range(odd_n // (2 * r)):
+        full[2 * r * (2 * m + 1) : 2 * r * (2 * m + 2)] = y[2 * r * m : 2 * r * (m + 1)]
+    full[n] = y[odd_n]
+    return full
+
+
+def _scaled(search: Search, y: Floats, H: int, odd: bool) -> Floats:
+    """A point with all harmonics and Omega in the scales of the search, as long as any."""
+    full = _with_even(search, y, H) if odd else y
+    n, scaled = unknowns(search.problem, H, False), np.zeros(search.size(False))
+    scaled[:n], scaled[-1] = full[:n] / search.x_scale, full[n] / search.w_scale
+    return scaled
 
 
 def buckled_branches(search: Search, seeds: list[Seed], known: list[Track]) -> list[Track]:
@@ -76,12 +134,8 @@ def meets(search: Search, other: Track, y: Floats, H: int) -> bool:
 def _asymmetric_start(search: Search, y: Floats, _: Floats, H: int) -> tuple[Floats, int] | None:
     """A point beside a loss of symmetry, off along the even null vector of the full Jacobian."""
     pb = search.problem
-    r = pb.M11.shape[0]
-    full = np.zeros(search.size(False))
-    odd_n, n = unknowns(pb, H, True), unknowns(pb, H, False)
-    for m in range(odd_n // (2 * r)):
-        full[2 * r * (2 * m + 1) : 2 * r * (2 * m + 2)] = y[2 * r * m : 2 * r * (m + 1)]
-    full[n] = y[odd_n]
+    full, n = np.zeros(search.size(False)), unknowns(pb, H, False)
+    full[: n + 1] = _with_even(search, y, H)
     R, J, A = np.empty(n + 1), np.empty((n + 1, n + 1)), np.empty((n + 1, n + 1))
     tables = fourier_tables(H, False, sample_count(pb, H, False))
     residual_and_jacobian(pb, H, False, full[n], full, *tables, R, J)

@@ -12,6 +12,7 @@ from frahm.harmonic_balance.search import Search, Track
 
 _MOST_POINTS = 6000
 _LONGEST = 0.02
+_HALVINGS = 60
 
 
 def followed(search: Search, odd: bool, y: Floats, H: int) -> Track:
@@ -58,11 +59,13 @@ def lies_on(search: Search, track: Track, y: Floats, H: int) -> bool:
     beyond = track.frequency - y[n]
     rise = track.ts[np.arange(len(track.Hs)), unknowns(search.problem, track.Hs, track.odd)]
     steps = np.flatnonzero((beyond[:-1] * beyond[1:] <= 0) | (rise[:-1] * rise[1:] < 0))
-    return any(_lies_in_step(search, track, y, n, int(i)) for i in steps)
+    return any(lies_in_step(search, track, y, H, y[n], int(i)) for i in steps)
 
 
-def _lies_in_step(search: Search, track: Track, y: Floats, n: int, i: int) -> bool:
-    """Whether a solution is the point of the branch in its own plane across the chord of step i."""
+def lies_in_step(search: Search, track: Track, X: Floats, H: int, W: float, i: int) -> bool:
+    """Whether a solution at Omega = W is the point of the branch in its own plane across the chord of step i."""
+    n = unknowns(search.problem, H, track.odd)
+    y = np.append(X[:n], W)
     scales = np.append(np.full(n, search.x_scale), search.w_scale)
     a, b = (_with_unknowns(search, track, k, n) / scales for k in (i, i + 1))
     here, chord = y[: n + 1] / scales - a, b - a
@@ -86,6 +89,28 @@ def _with_unknowns(search: Search, track: Track, i: int, n: int) -> Floats:
     point = np.zeros(n + 1)
     point[: min(n, own)], point[n] = track.ys[i, : min(n, own)], track.ys[i, own]
     return point
+
+
+def point_at(search: Search, track: Track, i: int, W: float) -> tuple[Floats, int] | None:
+    """Point of the branch at Omega = W between points i and i + 1 and its harmonics, by the Illinois method."""
+    lo, hi, below, above = 0.0, 1.0, track.frequency[i] - W, track.frequency[i + 1] - W
+    found = None
+    for _ in range(_HALVINGS):
+        share = 0.5 * (lo + hi) if below == above else (lo * above - hi * below) / (above - below)
+        point = midpoint(search, track, i, share)
+        if point is None:
+            return found
+        y, _, H = point
+        found = y, H
+        miss = float(y[unknowns(search.problem, H, track.odd)]) - W
+        if abs(miss) < 1e-13 * W:
+            break
+        if miss * above < 0:
+            lo, below = hi, above
+        else:
+            below *= 0.5
+        hi, above = share, miss
+    return found
 
 
 def midpoint(search: Search, track: Track, i: int, fraction: float = 0.5) -> tuple[Floats, Floats, int] | None:

@@ -194,7 +194,7 @@ def seeder_for(pb: Problem, window: Floats) -> Seeder:
     """Seeder of a condensed problem for frequencies spread over a window [rad/s]."""
     spring = spring_polynomial(pb)
     if pb.directions.shape[0] != 1:
-        return Seeder(pb, None, None, pb.odd and _may_buckle(pb), shared_stiffnesses(pb, window))
+        return Seeder(pb, None, None, pb.odd and _may_buckle(pb, float(window[0])), shared_stiffnesses(pb, window))
     rest = float(stiffness_at(pb, 0, 1.0)[0][0, 0].real)
     if abs(rest) < _ROUNDING * abs(stiffness_at(pb, 1, float(window[0]))[0][0, 0]):
         rest = 0.0  # of an absorber that nothing but its nonlinear spring holds: its rounding makes no two wells
@@ -212,9 +212,13 @@ def seeder_for(pb: Problem, window: Floats) -> Seeder:
     return Seeder(pb, spring, table, buckled)
 
 
-def _may_buckle(pb: Problem) -> bool:
-    """Whether the middle, or an element by itself, may be unstable without motion."""
+def _may_buckle(pb: Problem, W: float) -> bool:
+    """Whether the middle, or an element by itself, may be unstable without motion.
+
+    An absorber that nothing but its nonlinear spring holds has no static stiffness; its rounding is none either.
+    """
     K = stiffness_at(pb, 0, 1.0)[0].real.copy()
+    K[np.abs(K) < _ROUNDING * np.max(np.abs(stiffness_at(pb, 1, W)[0]))] = 0.0
     for e, code in enumerate(pb.codes):
         slope = law_force_and_slopes(code[0], code[1], code[2], pb.table, 0.0, 0.0)[1]
         K += slope * np.outer(pb.directions[:, e], pb.directions[:, e])
