@@ -13,7 +13,7 @@ from frahm.absorbers import Law
 from frahm.absorbers.packed import pack_laws
 from frahm.arrays import Complexes, Floats
 from frahm.harmonic_balance.condensation import unknowns
-from frahm.harmonic_balance.search import Search, Track
+from frahm.harmonic_balance.search import Search, Track, away_from_turns
 from frahm.harmonic_balance.seeds import Seed
 from frahm.systems import Element, System
 
@@ -39,12 +39,12 @@ def seeds_alike(search: Search, alike: Search, tracks: list[Track]) -> list[Seed
 
 
 def _seed(search: Search, alike: Search, track: Track) -> Seed:
-    middle = len(track.Hs) // 2
-    H, r = int(track.Hs[middle]), alike.problem.M11.shape[0]
-    X = track.ys[middle, : unknowns(alike.problem, H, track.odd)].reshape(-1, r, 2)
+    at = away_from_turns(alike, track)
+    H, r = int(track.Hs[at]), alike.problem.M11.shape[0]
+    X = track.ys[at, : unknowns(alike.problem, H, track.odd)].reshape(-1, r, 2)
     first, step = (1, 2) if track.odd else (0, 1)
     return Seed(
-        float(track.frequency[middle]),
+        float(track.frequency[at]),
         {first + step * m: _whole(search, alike, u[:, 0] + 1j * u[:, 1]) for m, u in enumerate(X)},
     )
 

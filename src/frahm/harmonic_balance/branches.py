@@ -14,7 +14,7 @@ from frahm.harmonic_balance.completing import complete
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import Point
 from frahm.harmonic_balance.following import followed, lies_on
-from frahm.harmonic_balance.search import Search, Track, begin, connected
+from frahm.harmonic_balance.search import Search, Track, away_from_turns, begin, connected
 from frahm.harmonic_balance.seeds import Seed, two_harmonic_seeds
 from frahm.harmonic_balance.starts import solve_seed, starts_of
 
@@ -116,8 +116,7 @@ def _join_beyond(search: Search, tracks: list[Track]) -> None:
     for track in tracks:
         if track.closed or track.parent is not None or any(track is other for other in hanging):
             continue
-        inside = np.flatnonzero((track.frequency >= search.lo) & (track.frequency <= search.hi))
-        start = int(inside[len(inside) // 2])
+        start = away_from_turns(search, track)
         whole = followed(far, track.odd, track.ys[start].copy(), int(track.Hs[start]))
         for other in hanging:
             at = int(np.argmin(np.abs(other.frequency - 0.5 * (search.lo + search.hi))))

@@ -96,6 +96,13 @@ class Search:
         return unknowns(self.problem, self.highest, odd) + 1
 
 
+def away_from_turns(search: Search, track: Track) -> int:
+    """The point of a branch in the window where Omega changes most along it: a good one to solve anew at its Omega."""
+    rise = np.abs(track.ts[np.arange(len(track.Hs)), unknowns(search.problem, track.Hs, track.odd)])
+    inside = (track.frequency >= search.lo) & (track.frequency <= search.hi)
+    return int(np.argmax(np.where(inside, rise, -1.0)))
+
+
 def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None) -> Search:
     """Condense the system and set the scales of the search; `forcing` is a factor over Omega, see `forcing_factor`."""
     pb = condense(system, forcing)

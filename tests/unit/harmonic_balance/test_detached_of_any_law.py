@@ -30,7 +30,7 @@ def test_a_vanishing_fifth_power_changes_nothing(force):
     other = with_parameters(quintic(1e-3), force=force)
     one, two = (frahm.frequency_response(system, frequency=WIDE) for system in (cubic, other))
     assert one.detached == two.detached == ((False,) if force < 1.06 else (False, True))
-    assert two.pipe_peak.max() == pytest.approx(one.pipe_peak.max(), rel=1e-6)
+    assert two.pipe_peak.max() == pytest.approx(one.pipe_peak.max(), rel=1e-4)  # of the points of either
 
 
 @pytest.mark.parametrize("force", [1.15, 1.2])
