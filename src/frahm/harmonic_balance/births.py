@@ -53,7 +53,8 @@ def seeds_beside(search: Search, extreme: Extreme) -> list[Seed]:
         place = _with_harmonics(search, extreme, turn)
         located = None if place is None else _extreme(search, extreme, place)
         if located is not None:
-            seeds += _on_ring(search, extreme, *located)
+            place, bend = located
+            seeds += _on_ring(search, extreme, place, bend) if bend else []
         elif abs(turn.size) < _CLOSE:
             search.undecided.append(turn.W)
     return seeds
@@ -61,18 +62,17 @@ def seeds_beside(search: Search, extreme: Extreme) -> list[Seed]:
 
 def _turns(search: Search, start: Extreme) -> list[_Place]:
     """Where lambda turns over a at the frequency of a start: the third harmonic can move that far from where it was."""
-    at, found = _first(search, start), []
+    found: list[_Place] = []
     X = _unknowns(search, start)
-    a, before, force = float(X[at]), None, 0j
+    before, force = None, 0j
     H = min(search.highest, _FIRST_HARMONICS)
-    for share in _SHARES:
-        X[at] = share * a
-        place = _place(search, start, start.frequency, X, H, force)
+    for share, more in zip(_SHARES, _SHARES / np.append(1.0, _SHARES[:-1]), strict=True):
+        X = X * more
+        place = _place(search, start, start.frequency, X.copy(), H, force)
         if place is None:
-            X[at] = share * a
-            before = None
+            before, X = None, share * _unknowns(search, start)
             continue
-        X, force = place.X.copy(), place.force
+        X, force = place.X, place.force
         if before is not None and start.sign * before.slopes[0] < 0 <= start.sign * place.slopes[0]:
             found.append(min(before, place, key=lambda end: abs(float(end.slopes[0]))))
         before = place
@@ -94,14 +94,15 @@ def _on_ring(search: Search, extreme: Extreme, place: _Place, bend: float) -> li
         if abs(beside.size) < 1e-3 * abs(place.size):
             return [_seed(search, extreme, beside)]
         way -= beside.size / beside.slopes[0]
-    search.undecided.append(place.W)
+    if abs(place.size) < _CLOSE:  # larger rings are met from first-harmonic roots
+        search.undecided.append(place.W)
     return []
 
 
 def _extreme(search: Search, start: Extreme, place: _Place) -> tuple[_Place, float] | None:
-    """The extreme of lambda near a place, and the second derivative by ln a, by Broyden's method.
+    """Where lambda is stationary near a place, and the second derivative by ln a, by Broyden's method.
 
-    None if there is no such extreme, or if two curves meet there instead.
+    The derivative is given as 0 where two curves meet instead of one being born. None if the method fails.
     """
     sides = [_with(search, start, place, step) for step in np.diag(_STEPS)]
     if any(side is None for side in sides):
@@ -112,7 +113,7 @@ def _extreme(search: Search, start: Extreme, place: _Place) -> tuple[_Place, flo
         step /= max(1.0, float(np.max(np.abs(step) / _LONGEST)))
         if abs(float(step @ place.slopes)) < 1e-3 * MARGIN:
             bends = np.linalg.eigvalsh((B + B.T) / 2) * start.sign
-            return (place, float(B[0, 0])) if np.min(bends) > 0 else None
+            return place, float(B[0, 0]) if np.min(bends) > 0 else 0.0
         there = _with(search, start, place, step)
         if there is None:
             return None

@@ -187,7 +187,7 @@ class Seeder:
         found = solutions_at(self.problem, W, k)
         if not found.complete:
             self.doubtful.add(W)
-        return [Seed(W, {1: u}) for u in (*found.harmonics, *found.almost)]
+        return [Seed(W, {1: u}) for u in found.harmonics]
 
 
 def seeder_for(pb: Problem, window: Floats) -> Seeder:

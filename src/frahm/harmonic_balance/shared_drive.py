@@ -32,7 +32,7 @@ _COUPLED = 1e-9  # of the largest coupling: what is rounding
 _MOST = 6  # coordinates: combinations grow as 3 to that number
 _SAME = 1e-9
 _SOLVED = 1e-6  # of the drive: what a change of sign that is a root leaves
-_NEAR = 0.02  # of the drive: how near a combination comes to a pair of further roots that is worth a start
+_NEAR = 0.3  # |lambda - 1| up to which its turns are told
 
 
 class _Arc(NamedTuple):
@@ -50,10 +50,21 @@ class _Arc(NamedTuple):
 
 @dataclass(frozen=True)
 class Solutions:
-    """First harmonics U (solutions, r) at one frequency, those nearly there, and whether their signs add up to 1."""
+    """First harmonics at one frequency.
+
+    Attributes
+    ----------
+    harmonics : ndarray, shape (s, r)
+        U of all solutions.
+    turns : tuple of ndarray
+        U (t, r) where the force lambda F that a combination needs is extreme over y, near lambda = 1; there
+        ln lambda^2 (t,), and +1 (t,) for a minimum or -1 for a maximum.
+    complete : bool
+        Whether the signs of det J of the solutions add up to the degree of the equations.
+    """
 
     harmonics: Complexes
-    almost: Complexes
+    turns: tuple[Complexes, Floats, Floats]
     complete: bool
 
 
@@ -95,14 +106,16 @@ def solutions_at(pb: Problem, W: float, k: Floats) -> Solutions:
     """All first-harmonic solutions at Omega = W [rad/s] of coordinates with the cubic stiffnesses k (r,)."""
     S, F = stiffness_at(pb, 1, W)
     b = shared_drive(S, F)
+    none = np.empty((0, F.size), complex)
+    found = Solutions(none, (none, np.empty(0), np.empty(0)), False)
     if b is None:
-        return Solutions(np.empty((0, F.size), complex), np.empty((0, F.size), complex), False)
-    found, almost = np.empty((0, F.size), complex), np.empty((0, F.size), complex)
+        return found
     for points in _POINTS:
-        found, almost = _roots(np.diag(S) - F * b, F, b, k, points)
-        if _degree(S, k, found) == 1:
-            return Solutions(found, almost, True)
-    return Solutions(found, almost, False)
+        harmonics, turns = _roots(np.diag(S) - F * b, F, b, k, points)
+        found = Solutions(harmonics, turns, _degree(S, k, harmonics) == 1)
+        if found.complete:
+            break
+    return found
 
 
 def _degree(S: Complexes, k: Floats, U: Complexes) -> int:
@@ -118,16 +131,21 @@ def _degree(S: Complexes, k: Floats, U: Complexes) -> int:
     return total
 
 
-def _roots(p: Complexes, F: Complexes, b: Complexes, k: Floats, points: int) -> tuple[Complexes, Complexes]:
-    """Solutions, and where a combination comes near to a pair of further ones, both (solutions, r)."""
+def _roots(
+    p: Complexes, F: Complexes, b: Complexes, k: Floats, points: int
+) -> tuple[Complexes, tuple[Complexes, Floats, Floats]]:
+    """Solutions (s, r), and the turns of the force, see `Solutions`."""
     found: list[Complexes] = []
-    almost: list[Complexes] = []
+    turning: list[Complexes] = []
+    sizes: list[tuple[float, float]] = []
     for arc in _arcs(p, F, b, k):
-        out, near = np.empty((points, 2)), np.empty((points, 2))
-        number, nearly = _search(arc, points, out, near)
+        out, turns = np.empty((points, 2)), np.empty((points, 3))
+        number, turned = _search(arc, points, out, turns)
         found += [_motion(arc, s) for s, miss in out[:number] if miss < _SOLVED]
-        almost += [_motion(arc, s) for s, miss in near[:nearly] if miss < _NEAR]
-    return _distinct(found, k.size), _distinct(almost, k.size)
+        turning += [_motion(arc, s) for s in turns[:turned, 0]]
+        sizes += [(2 * math.log1p(excess), sign) for _, excess, sign in turns[:turned]]
+    force, sign = np.array(sizes).reshape(-1, 2).T
+    return _distinct(found, k.size), (np.array(turning, complex).reshape(-1, k.size), force, sign)
 
 
 def _arcs(p: Complexes, F: Complexes, b: Complexes, k: Floats) -> Iterator[_Arc]:
@@ -200,10 +218,10 @@ def _excess(arc, s, U):
 
 
 @kernel
-def _search(arc, points, out, near):
-    """Roots s in [0, 1] of one combination, with what they miss by, into out; smallest misses of one sign into near."""
+def _search(arc, points, out, turns):
+    """Roots s in [0, 1] of one combination, with what they miss by, into out; s, lambda - 1 and sign into turns."""
     U = np.empty(arc.k.size, np.complex128)
-    number = nearly = 0
+    number = turned = 0
     value = np.empty(points)
     step = 1.0 / (points - 1.0)
     for j in range(points):
@@ -212,20 +230,19 @@ def _search(arc, points, out, near):
         if value[j] * value[j + 1] <= 0.0 and value[j] != 0.0:
             number = _put_crossing(arc, j * step, (j + 1) * step, U, out, number)
     for j in range(1, points - 1):
-        here = abs(value[j])
-        one_sign = value[j] * value[j - 1] > 0.0 and value[j] * value[j + 1] > 0.0
-        if not one_sign or here > abs(value[j - 1]) or here > abs(value[j + 1]):
+        if (value[j] - value[j - 1]) * (value[j] - value[j + 1]) <= 0.0 or abs(value[j]) > _NEAR:
             continue
         left, right = (j - 1) * step, (j + 1) * step
-        s = _summit(arc, left, right, math.copysign(1.0, value[j]), U)
-        miss = _excess(arc, s, U)
-        if miss * value[j] <= 0.0:
+        sign = 1.0 if value[j] < value[j - 1] else -1.0
+        s = _summit(arc, left, right, sign, U)
+        there = _excess(arc, s, U)
+        if there * value[j] <= 0.0 and value[j] * value[j - 1] > 0.0 and value[j] * value[j + 1] > 0.0:
             number = _put_crossing(arc, left, s, U, out, number)
             number = _put_crossing(arc, s, right, U, out, number)
-        elif nearly < near.shape[0]:
-            near[nearly, 0], near[nearly, 1] = s, abs(miss)
-            nearly += 1
-    return number, nearly
+        if turned < turns.shape[0]:
+            turns[turned, 0], turns[turned, 1], turns[turned, 2] = s, there, sign
+            turned += 1
+    return number, turned
 
 
 @kernel

@@ -13,6 +13,7 @@ from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.root_counts import cubic_turns, extreme_turns, polynomial_counts, table_counts
 from frahm.harmonic_balance.search import Search
 from frahm.harmonic_balance.seeds import Extreme, Seed, third_harmonics
+from frahm.harmonic_balance.shared_drive import Solutions, solutions_at
 from frahm.polynomials import cubic_roots
 
 _WORST = 0.05  # truncation with stops or friction beyond which a solution of the harmonics is none of the equations
@@ -20,6 +21,7 @@ _SEED_FREQUENCIES = 17
 _GRID = 401
 _SHARED_GRID = 161  # where one frequency takes several cubics: a detached curve of a smaller range can be missed
 _BAND = 0.65  # ln(hi/lo) of the widest window these numbers of frequencies are for: wider ones take more of them
+_NEXT = 0.2  # of a motion: how far a turn of the force moves from one frequency to the next
 _BESIDE = 8  # points of the grid beyond each edge: a detached curve born there can reach into the window
 _SHORT_RANGE, _AROUND = 16, 9  # points of the grid in a short range of three roots; frequencies looked at around it
 
@@ -44,7 +46,7 @@ def starts_of(search: Search) -> Starts:
     spread, dense = (np.linspace(search.lo, search.hi, number) for number in (seeds, 3 * seeds))
     e, table = search.seeder.spring, search.seeder.table
     if search.seeder.shared is not None:
-        return _starts_of_several(search, spread, math.ceil(_SHARED_GRID * bands))
+        return _starts_of_several(search, search.seeder.shared, spread, math.ceil(_SHARED_GRID * bands))
     if e is None and table is None:
         return Starts(dense, np.empty(0), [])
     grid = np.linspace(search.lo, search.hi, points)
@@ -113,12 +115,32 @@ def _ranges(grid: Floats, counts: np.ndarray, window: tuple[float, float]) -> tu
     return inside[0], inside[1]
 
 
-def _starts_of_several(search: Search, spread: Floats, points: int) -> Starts:
+def _starts_of_several(search: Search, k: Floats, spread: Floats, points: int) -> Starts:
     """Frequencies spread over the window, and one of every range in which the number of solutions is the same."""
     grid = np.linspace(search.lo, search.hi, points)
-    counts = np.array([len(search.seeder.at(float(W), search.x_scale)) for W in grid])
+    found = [solutions_at(search.problem, float(W), k) for W in grid]
+    search.seeder.doubtful.update(float(W) for W, at in zip(grid, found, strict=True) if not at.complete)
+    counts = np.array([len(at.harmonics) for at in found])
     middles, short = _ranges(grid, counts, (search.lo, search.hi))
-    return Starts(np.unique(np.concatenate([spread, middles, short])), np.empty(0), [])
+    extremes = [extreme for w in range(1, points - 1) for extreme in _extremes_at(grid, found, w)]
+    return Starts(np.unique(np.concatenate([spread, middles, short])), np.empty(0), extremes)
+
+
+def _extremes_at(grid: Floats, found: list[Solutions], w: int) -> list[Extreme]:
+    """Turns of the force at one frequency that are beyond those beside it."""
+    extremes = []
+    for u, size, sign in zip(*found[w].turns, strict=True):
+        beside = [
+            float(sign * other_size)
+            for at in (found[w - 1], found[w + 1])
+            for other, other_size, other_sign in zip(*at.turns, strict=True)
+            if other_sign == sign and np.linalg.norm(np.abs(other) - np.abs(u)) < _NEXT * np.linalg.norm(u)
+        ]
+        if all(sign * size <= value for value in beside):
+            largest = u[np.argmax(np.abs(u))]
+            harmonics = {1: u * abs(largest) / largest}
+            extremes.append(Extreme(float(grid[w]), harmonics, int(sign), True))
+    return extremes
 
 
 def solve_seed(search: Search, seed: Seed, odd: bool) -> tuple[Floats, int] | None:

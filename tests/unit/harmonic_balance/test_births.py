@@ -97,3 +97,28 @@ def test_where_equal_sinks_part_is_located_from_every_window(half):
         assert {0} < {p.branch for p in near}
         assert all(p.interval[0] <= crossing <= p.interval[1] for p in near if p.branch == 0)
         assert all(p.interval[1] - p.interval[0] < 1e-6 for p in near)
+
+
+def two_unequal_sinks(force):
+    """The sink of above in two unequal parts, whose first detached curve is born at 0.65930816165 times the force.
+
+    `detached_curve_events(system, "force", (0.6, 0.9), slices=2)` locates it, in most of a minute.
+    """
+    host, parts = SINK.mass[0, 0], ((0.45, 1.1), (0.55, 1.0))
+    law, pipe = SINK.elements[0].law, np.diag([1.0, 0, 0])
+    elements = [
+        frahm.Element(np.eye(3)[1 + i] - np.eye(3)[0], law.scaled(share * stiffer, share))
+        for i, (share, stiffer) in enumerate(parts)
+    ]
+    mass = np.diag([host, *(share * SINK.mass[1, 1] for share, _ in parts)])
+    damping, stiffness = SINK.damping[0, 0] * pipe, SINK.stiffness[0, 0] * pipe
+    forcing = force * 0.6593081616512304 * SINK.forcing[0] * np.eye(3)[0]
+    return frahm.System(mass, damping, stiffness, forcing, elements, reference_frequency=SINK.reference_frequency)
+
+
+@pytest.mark.parametrize(("force", "rings"), [(1 - 1e-5, 0), (1 + 1e-5, 1), (1 + 1e-3, 1)])
+def test_a_detached_curve_of_two_unequal_sinks_is_found_however_near_its_birth(force, rings):
+    curve = frahm.frequency_response(two_unequal_sinks(force), detuning=(-0.4, 0.4))
+    near = [b for b in curve.branches if b.detached and np.all(np.abs(b.frequency - 4.797367267) < 0.01)]
+    assert len(near) == rings
+    assert curve.unverified == ()
