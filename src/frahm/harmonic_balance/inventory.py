@@ -9,6 +9,8 @@ from frahm.harmonic_balance.search import Search, Track
 
 _SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
 
+_NEAR = 0.01  # of a frequency: how far from it a detached curve may be and still reach there
+
 
 def inventory_text(search: Search) -> str:
     """What the search for branches proves and what it only searches."""
@@ -33,11 +35,12 @@ def inventory_text(search: Search) -> str:
     )
 
 
-def not_proven(search: Search) -> tuple[str, ...]:
-    """A sentence where responses were searched without proof that all were found."""
+def not_proven(search: Search, at: float | None = None) -> tuple[str, ...]:
+    """A sentence where responses were searched without proof that all were found, in the window or `at` a frequency."""
     seeder, found = search.seeder, []
+    lo, hi = (search.lo, search.hi) if at is None else ((1 - _NEAR) * at, (1 + _NEAR) * at)
     for W in search.undecided:
-        if search.lo <= W <= search.hi:
+        if lo <= W <= hi and not _all_known(search, at):
             found.append(
                 f"Whether a small detached curve exists near {W:.6g} rad/s could not be told: it is born within"
                 f" {MARGIN:.0e} of the force, or its birth could not be located."
@@ -51,6 +54,13 @@ def not_proven(search: Search) -> tuple[str, ...]:
             " the first-harmonic solutions found do not add up to the degree of their equations."
         )
     return tuple(found)
+
+
+def _all_known(search: Search, at: float | None) -> bool:
+    """Whether the equations of one harmonic are asked for at a frequency where all their solutions are known."""
+    seeder = search.seeder
+    proven = seeder.shared is not None or (seeder.spring is not None and seeder.table is None)
+    return at is not None and search.harmonics == 1 and proven and at not in seeder.doubtful
 
 
 def unfinished(tracks: list[Track]) -> list[str]:

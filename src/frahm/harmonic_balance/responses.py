@@ -92,7 +92,9 @@ def periodic_responses_of(system: System, frequency: float, harmonics: int | Non
     search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
     tracks = find_branches(search, at=frequency)
     found = responses_on(search, tracks, frequency)
-    return Found(found, inventory_text(search), (*search.budget.sentences(), *not_proven(search), *unfinished(tracks)))
+    return Found(
+        found, inventory_text(search), (*search.budget.sentences(), *not_proven(search, frequency), *unfinished(tracks))
+    )
 
 
 def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> list[PeriodicResponse]:
