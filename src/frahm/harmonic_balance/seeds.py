@@ -1,11 +1,11 @@
 """Where branches are looked for: every root of the first-harmonic problem, and of the superharmonic ones.
 
-With one nonlinear element, or parallel ones, whose springs are odd polynomials, the first-harmonic problem S Z + k(|Z|^2) Z = F is one
-polynomial in |Z|^2, so its roots are known completely at any frequency; the same holds for a free third harmonic beside
-a given first one. With one element of any other law, and for motions about another mean than 0, the roots are searched
-on a dense grid of amplitudes (`describing`). Those of several cubic elements that one motion drives are found along one
-unknown (`shared_drive`); otherwise, with several elements, they are searched by Newton's method from a fixed, spread set
-of starts. The result says which.
+With one nonlinear element, or parallel ones, whose springs are odd polynomials, the first-harmonic problem
+S Z + k(|Z|^2) Z = F is one polynomial in |Z|^2, so its roots are known completely at any frequency; the same holds for
+a free third harmonic beside a given first one. With one element of any other law, and for motions about another mean
+than 0, the roots are searched on a dense grid of amplitudes (`describing`). Those of several cubic elements that one
+motion drives are found along one unknown (`shared_drive`); otherwise, with several elements, they are searched by
+Newton's method from a fixed, spread set of starts. The result says which.
 """
 
 from __future__ import annotations
