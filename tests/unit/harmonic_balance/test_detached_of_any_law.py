@@ -103,3 +103,23 @@ def test_the_part_cut_off_is_the_first_branch_of_the_wide_window():
     (low,) = (b for b in narrow.branches if b.detuning.min() > 0.05 and b.detuning.max() > 0.399)
     (peak,) = crossings(low, 0.2)[:1]
     assert any(other == pytest.approx(peak, rel=0.02) for other in crossings(wide.branches[0], 0.2))
+
+
+@pytest.mark.parametrize(("law", "bounds"), [("transverse springs", (1.1, 1.14)), ("stops", (1.05, 1.08))])
+def test_a_detached_curve_of_any_law_is_found_however_near_its_birth(law, bounds):
+    length, cubic = 4 * 0.0132, {"kind": "cubic", "stiffness": MASS * KAPPA}
+    if law == "stops":
+        system = sink(cubic)
+        stopped = frahm.Cubic(
+            MASS * KAPPA, system.elements[0].law.damping, stops=frahm.Stops(gap=0.03, stiffness=2e3, depth=0.01)
+        )
+        parts = (system.mass, system.damping, system.stiffness, system.forcing)
+        element = frahm.Element(system.elements[0].direction, stopped)
+        system = frahm.System(*parts, [element], reference_frequency=system.reference_frequency)
+    else:
+        system = sink({"kind": "transverse-springs", "stiffness": MASS * KAPPA * length**2, "length": length})
+    (birth,) = frahm.detached_curve_events(system, "force", bounds, frequency=WIDE, slices=2)
+    assert birth.kind == "birth"
+    for beside, there in ((-1e-5, False), (1e-5, True), (5e-4, True)):
+        curve = frahm.frequency_response(with_parameters(system, force=birth.value * (1 + beside)), frequency=WIDE)
+        assert any(curve.detached) == there
