@@ -23,7 +23,7 @@ def inventory_text(search: Search) -> str:
     elif seeder.table is not None:
         start = dense
     elif seeder.shared is not None:
-        start = "all first-harmonic solutions, near misses of further ones, and motions of equal absorbers alike"
+        start = "all first-harmonic solutions, births of detached curves, and motions of equal absorbers alike"
     else:
         start = _SPREAD
         if search.problem.odd and not seeder.buckled:
