@@ -61,6 +61,20 @@ def universal_roots(c, h):
 
 
 @kernel
+def cubic_roots(S, F, k):
+    """|Z|^2 of all solutions of S Z + k |Z|^2 Z = F, ascending: their number and three values."""
+    D, load = abs(S) ** 2, abs(F) ** 2
+    if k == 0.0 or load == 0.0 or D == 0.0:
+        if D == 0.0 and k != 0.0 and load > 0.0:
+            return 1, np.cbrt(load / (k * k)), math.nan, math.nan
+        return (1 if D > 0.0 else 0), (load / D if D > 0.0 else math.nan), math.nan, math.nan
+    c = math.copysign(1.0, k) * S.real / math.sqrt(D)
+    count, m1, m2, m3 = universal_roots(c, abs(k) * load / D**1.5)
+    scale = math.sqrt(D) / abs(k)
+    return count, m1 * scale, m2 * scale, m3 * scale
+
+
+@kernel
 def _largest_cubic_root(b, c, d):
     """Largest real root of w^3 + b w^2 + c w + d."""
     shift = b / 3.0

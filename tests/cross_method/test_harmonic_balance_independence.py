@@ -6,8 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import frahm
-from frahm.harmonic_balance import begin, branches, find_branches
+from frahm.harmonic_balance import begin, branches, find_branches, following, starts
 from frahm.harmonic_balance.events import unstable_count
+from frahm.harmonic_balance.starts import Starts
 from frahm.systems import with_parameters
 from searching import at_most
 
@@ -81,10 +82,15 @@ def test_one_window_or_two_halves(system, split):
 @given(systems())
 @quickly
 def test_from_which_end_the_search_starts(system):
-    seeds = branches.seed_frequencies
+    original = branches.starts_of
+
+    def reversed_starts(search):
+        found = original(search)
+        return Starts(found.everywhere[::-1], found.third[::-1], found.extremes[::-1])
+
     expected = frahm.frequency_response(system, frequency=(LO, HI))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(branches, "seed_frequencies", lambda search: tuple(W[::-1] for W in seeds(search)))
+        patch.setattr(branches, "starts_of", reversed_starts)
         found = frahm.frequency_response(system, frequency=(LO, HI))
     assert_same_points(points_of(found), points_of(expected))
     assert_same_responses([found], [expected])
@@ -93,14 +99,20 @@ def test_from_which_end_the_search_starts(system):
 
 @pytest.mark.parametrize(
     "setting",
-    [("_LONGEST", 0.007), ("_LONGEST", 0.031), ("_SEED_FREQUENCIES", 80), ("_SEED_FREQUENCIES", 81), ("_GRID", 282)],
+    [
+        (following, "_LONGEST", 0.007),
+        (following, "_LONGEST", 0.031),
+        (starts, "_SEED_FREQUENCIES", 80),
+        (starts, "_SEED_FREQUENCIES", 81),
+        (starts, "_GRID", 282),
+    ],
 )
 @given(system=systems())
 @at_most(6, more=4)
 def test_steps_and_grids(setting, system):
     expected = frahm.frequency_response(system, frequency=(LO, HI))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(branches, *setting)
+        patch.setattr(*setting)
         found = frahm.frequency_response(system, frequency=(LO, HI))
     assert_same_points(points_of(found), points_of(expected))
     assert_same_responses([found], [expected])
@@ -119,12 +131,14 @@ def test_number_of_harmonics(system):
 @quickly
 def test_special_points_account_for_every_change_of_the_number_of_unstable_multipliers(system):
     sizes = {"saddle-node": 1, "branch-point": 1, "period-doubling": 1, "neimark-sacker": 2}
-    for track in find_branches(begin(system, LO, HI, None)):
-        rows = [np.flatnonzero(np.all(track.columns == e.columns, axis=1)) for e in track.events if e.located]
-        assert all(row.size for row in rows)
-        special = {
-            int(row[0]): sizes[e.kind] for row, e in zip(rows, (e for e in track.events if e.located), strict=True)
-        }
+    tracks = find_branches(begin(system, LO, HI, None))
+    located = [(track, event) for track in tracks for event in track.events if event.located]
+    for track in tracks:
+        special = {}
+        for owner, event in located:  # an asymmetric branch begins at a point of the symmetric one
+            rows = np.flatnonzero(np.all(track.columns == event.columns, axis=1))
+            assert rows.size or owner is not track
+            special |= {int(row): sizes[event.kind] for row in rows[:1]}
         counts = unstable_count(track.multipliers)
         before, passed = None, 0
         for i, count in enumerate(counts):

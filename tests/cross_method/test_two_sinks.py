@@ -64,4 +64,5 @@ def test_where_the_sinks_part_is_located(curves):
         ]  # fmt: skip
         assert abs(counts[0] - counts[1]) == 1
     assert [b.detached for b in both.branches].count(False) == 2  # the motion alike, and the one born from it
-    assert "not proven complete" in both.settings["inventory"]
+    assert "all first-harmonic solutions" in both.settings["inventory"]
+    assert both.unverified == ()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.harmonic_balance import branches
+from frahm.harmonic_balance import branches, following
 from frahm.harmonic_balance.follow import STEP_TOO_SMALL
 
 WINDOW = (0.6, 1.5)
@@ -226,13 +226,13 @@ def test_one_element_or_two_halves_of_it():
 def test_a_branch_that_cannot_be_followed_is_named_and_the_rest_stays(monkeypatch):
     case = frahm.load_case("jacket-pipe").with_absorber(kappa=367.38, xi2=0.0085, rho2=0.02)
     whole = frahm.frequency_response(case, detuning=(-0.4, 0.4))
-    follow = branches.follow
+    follow = following.follow
 
     def give_up(*arguments):
         count, ending = follow(*arguments)
         return (count, ending) if ending == 1 else (count // 2, STEP_TOO_SMALL)  # closed curves stay
 
-    monkeypatch.setattr(branches, "follow", give_up)
+    monkeypatch.setattr(following, "follow", give_up)
     curve = frahm.frequency_response(case, detuning=(-0.4, 0.4))
     assert any("could not be followed to its end" in sentence for sentence in curve.unverified)
     folds = [p.detuning for p in curve.special_points]

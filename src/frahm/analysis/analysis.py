@@ -32,7 +32,7 @@ from frahm.analysis.verdict import largest_motion, lock_in, verdict
 from frahm.analysis.wind import wind
 from frahm.assessment import accepted
 from frahm.case import Case, field_values, load_case
-from frahm.harmonic_balance.branches import GOAL
+from frahm.harmonic_balance.search import GOAL
 from frahm.time_integration.batch import TOLERANCE
 
 if TYPE_CHECKING:

@@ -35,7 +35,7 @@ def attractors(work: Work) -> Section:
         results={"attractors": [_row(attractor) for attractor in found]},
         data={"attractors": found.to_dataset()},
         checks=(Check(_SETTLED, PASS if open_share == 0 else UNVERIFIED, detail),),
-        unverified=() if open_share == 0 else (detail,),
+        unverified=(*(() if open_share == 0 else (detail,)), *found.unverified),
         notes=(f"Basin fractions are statistics of a sample: {found.statement}",),
     )
 

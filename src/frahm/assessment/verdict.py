@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,7 +29,7 @@ def doubts_of(
 ) -> tuple[str, ...]:
     """What speaks against the numbers."""
     found = [survey.at[speed] for speed in sorted(survey.at)]
-    doubts = [*unsettled_winds(found), *_uncounted(found), *_drifting(found)]
+    doubts = [*unsettled_winds(found), *_uncounted(found), *_drifting(found), *_not_searched(found)]
     if known["binning"] > _COARSE:
         doubts.append(
             f"The damage with absorbers changes by {known['binning']:.0%} with the way it is summed over the wind bins:"
@@ -45,6 +45,15 @@ def doubts_of(
             " analysis.detuning)."
         )
     return tuple(doubts)
+
+
+def _not_searched(found: Sequence[WindFindings]) -> list[str]:
+    """What the searches for periodic responses could not verify, and at which winds."""
+    winds: dict[str, list[float]] = {}
+    for at in found:
+        for doubt in at.found.unverified:
+            winds.setdefault(doubt, []).append(at.speed)
+    return [f"At {min(speeds):.4g} to {max(speeds):.4g} m/s: {doubt}" for doubt, speeds in winds.items()]
 
 
 def notes_of(known: Mapping[str, Any], survey: WindSurvey) -> tuple[str, ...]:

@@ -186,13 +186,14 @@ class WindSurvey:
         if self.changed is not None:
             system = self.changed(system)
         W = float(wind_excitation(self.case).frequency(speed))
-        responses = tuple(periodic_responses_of(system, W, None))
+        responses = periodic_responses_of(system, W, None)
         region = default_region(system, W, responses)
         found = attractors_from(
-            _strobe(system, W), responses, region, self.samples, self.seed, settling_periods(system, W), False
-        )
+            _strobe(system, W), responses, region, self.samples, self.seed, settling_periods(system, W),
+            responses.unverified,
+        )  # fmt: skip
         damage = self._damage(system, found)
-        return WindFindings(speed, W, system, responses, found, damage)
+        return WindFindings(speed, W, system, tuple(responses), found, damage)
 
     def _carried(self, speed: float) -> WindFindings:
         here = self.at[speed]

@@ -126,6 +126,8 @@ class AttractorSet(Sequence[Attractor]):
         Most periods a motion was followed.
     outcome : Outcome
         INTERRUPTED if the sample was not finished.
+    unverified : tuple of str
+        What the search for the periodic responses behind them could not verify; empty if nothing.
     """
 
     attractors: tuple[Attractor, ...]
@@ -136,6 +138,7 @@ class AttractorSet(Sequence[Attractor]):
     seed: int
     periods: int
     outcome: Outcome
+    unverified: tuple[str, ...] = ()
 
     @overload
     def __getitem__(self, index: int) -> Attractor: ...
@@ -207,7 +210,7 @@ class AttractorSet(Sequence[Attractor]):
         return {
             "frahm": __version__, "frequency": self.frequency, "detuning": self.detuning, **bounds,
             "samples": self.samples, "seed": self.seed, "periods": self.periods, "outcome": self.outcome.value,
-            "statement": self.statement,
+            "statement": self.statement, "unverified": " ".join(self.unverified),
         }  # fmt: skip
 
 

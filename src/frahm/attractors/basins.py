@@ -94,7 +94,7 @@ def basin_map(
         labels[np.isin(settled.labels, group)] = index
     attractors = AttractorSet(
         tuple(attractor for _, attractor in found), W, float(detuning_of(system, W)), region, len(states), 0, periods,
-        Outcome.DONE if np.all(done) else Outcome.INTERRUPTED,
+        Outcome.DONE if np.all(done) else Outcome.INTERRUPTED, responses.unverified,
     )  # fmt: skip
     return _dataset(attractors, names, axes, labels.reshape(shape))
 

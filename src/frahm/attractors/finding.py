@@ -96,7 +96,8 @@ def find_attractors(
     given = None if region is None else checked_region(system, region)
     responses = periodic_responses_of(system, W, None)
     box = default_region(system, W, responses) if given is None else given
-    return attractors_from(stroboscope(system, W, workers), responses, box, samples, seed, periods)
+    strobe = stroboscope(system, W, workers)
+    return attractors_from(strobe, responses, box, samples, seed, periods, responses.unverified)
 
 
 def settling_periods(system: System, frequency: float) -> int:
@@ -119,9 +120,9 @@ def attractors_from(
     samples: int,
     seed: int,
     periods: int,
-    exponents: bool = True,
+    unverified: tuple[str, ...] = (),
 ) -> AttractorSet:
-    """Attractors where the periodic responses are known; without `exponents` no motion is called chaotic."""
+    """Attractors where the periodic responses are known, and what of these is unverified."""
     system = strobe.system
     starts = sample_region(system, region, samples, seed) if samples else np.zeros((0, 2 * system.size))
     settling = begin_settling(strobe, responses, periods)
@@ -129,7 +130,7 @@ def attractors_from(
     settled = settling.settle(starts, resume=not seeds.interrupted)
     rest = settling.settle(np.zeros((1, 2 * system.size)), resume=not settled.interrupted)
     counted = np.array([outcome is not Outcome.INTERRUPTED for outcome in settled.outcomes], dtype=bool)
-    found = describe(settling, settled, counted, int(rest.labels[0]), exponents)
+    found = describe(settling, settled, counted, int(rest.labels[0]))
     return AttractorSet(
         attractors=tuple(attractor for _, attractor in found),
         frequency=strobe.frequency,
@@ -139,6 +140,7 @@ def attractors_from(
         seed=seed,
         periods=periods,
         outcome=Outcome.DONE if np.all(counted) and not rest.interrupted else Outcome.INTERRUPTED,
+        unverified=unverified,
     )
 
 
@@ -148,7 +150,7 @@ def attractors_reached(
     """Attractors that motions from the states (k, 2n) end on; they say nothing of basins: their fractions are 0."""
     settling = begin_settling(strobe, responses, periods)
     settled = settling.settle(states)
-    found = describe(settling, settled, np.zeros(len(states), dtype=bool), exponents=False)
+    found = describe(settling, settled, np.zeros(len(states), dtype=bool))
     reached = [attractor for labels, attractor in found if np.isin(settled.labels, labels).any()]
     return [dataclasses.replace(attractor, basin_fraction=0.0) for attractor in reached]
 
@@ -160,7 +162,7 @@ def begin_settling(strobe: Stroboscope, responses: Sequence[PeriodicResponse], p
 
 
 def describe(
-    settling: Settling, settled: Settled, counted: np.ndarray, rest: int = UNLABELLED, exponents: bool = True
+    settling: Settling, settled: Settled, counted: np.ndarray, rest: int = UNLABELLED
 ) -> list[tuple[list[int], Attractor]]:
     """Attractors with the labels each stands for, the largest pipe peak first; the unsettled ones have no label."""
     total = int(np.count_nonzero(counted))
@@ -175,7 +177,7 @@ def describe(
             looks = _orbit_looks(settling.strobe, first)
         else:
             clouds = [item for item in (settling.known[i] for i in group) if isinstance(item, Cloud)]
-            looks = _cloud_looks(settling.strobe, clouds, exponents)
+            looks = _cloud_looks(settling.strobe, clouds)
         found.append((group, Attractor(**_where(settling.strobe), **looks, **chance, from_rest=rest in group)))
     found += [([], lost) for lost in _unsettled(settling.strobe, settled, counted, total)]
     return sorted(found, key=lambda item: -np.nan_to_num(item[1].pipe_peak, nan=-1.0, posinf=np.inf))
@@ -243,7 +245,7 @@ def _orbit_looks(strobe: Stroboscope, orbit: Orbit) -> dict[str, Any]:
     }
 
 
-def _cloud_looks(strobe: Stroboscope, clouds: Sequence[Cloud], exponents: bool) -> dict[str, Any]:
+def _cloud_looks(strobe: Stroboscope, clouds: Sequence[Cloud]) -> dict[str, Any]:
     members = clouds[0].members
     exponent = clouds[0].exponent
     beat = beat_frequency(strobe, members)

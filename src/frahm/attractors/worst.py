@@ -242,23 +242,22 @@ def worst_over(
         return _concluded(system, within, wide, curve, linear_motions(system, curve, within), min_basin, ())
     box = region or _region_of(system, curve, lo, hi)
 
-    def survey(W: float, exponents: bool = False) -> AttractorSet:
+    def survey(W: float) -> AttractorSet:
         responses = responses_at(W)
         known = None if sampled else stable_motions(system, responses, W)
         if known is not None:
             return known
         followed = settling_periods(system, W) if periods is None else periods
-        return attractors_from(stroboscope(at(W), W, workers), responses, box, samples, seed, followed, exponents)
+        return attractors_from(stroboscope(at(W), W, workers), responses, box, samples, seed, followed)
 
-    def look(W: float, exponents: bool = False) -> None:
-        surveys[W] = survey(W, exponents)
+    def look(W: float) -> None:
+        surveys[W] = survey(W)
 
     doubts: list[str] = []
     try:
         for W in _first_frequencies(curve, lo, hi, beside):
             look(W)
         _refine(surveys, look, min_basin, sizes)
-        look(_largest(surveys, _pipe, min_basin)[0], exponents=True)
         beyond = {W: survey(W) for W in _outside(curve, lo, hi)}
         doubts += _larger_beyond(beyond, _largest(surveys, _pipe, min_basin)[1].pipe_peak, min_basin, wide)
     except KeyboardInterrupt:

@@ -19,7 +19,10 @@ import scipy.linalg
 from frahm.absorbers.packed import pack_laws
 from frahm.arrays import Complexes, Floats
 from frahm.errors import ParameterError
+from frahm.harmonic_balance.kernels import stiffness
 from frahm.systems import Derivative, System
+
+_PARALLEL = 1e-12  # sine of the angle between directions that are parallel but for rounding
 
 
 class Problem(NamedTuple):
@@ -96,6 +99,15 @@ def condense(system: System, forcing: Floats | None = None) -> Problem:
     )  # fmt: skip
 
 
+def stiffness_at(pb: Problem, k: int, W: float) -> tuple[Complexes, Complexes]:
+    """S (r, r) [N/m] and condensed force (r,) [N] at harmonic k of Omega = W [rad/s]."""
+    r = pb.M11.shape[0]
+    S, dS = np.empty((r, r), complex), np.empty((r, r), complex)
+    f, df = np.empty(r, complex), np.empty(r, complex)
+    stiffness(pb, 1j * k * W, S, dS, f, df)
+    return S, f
+
+
 def coordinates(system: System) -> tuple[Floats, Floats]:
     """T (n, n) with x = T (u, y), and directions (r, E) with z_e = directions[:, e] . u."""
     N = np.column_stack([element.direction for element in system.elements if not element.law.is_linear])
@@ -143,12 +155,33 @@ def linear_part(system: System) -> tuple[Floats, Floats]:
 
 
 def _relative_coordinates(N: Floats) -> tuple[Floats, Floats]:
-    """P with x = P u + ..., and directions with z_e = directions[:, e] . u; u = z where the elements allow it."""
+    """P with x = P u + ..., and directions with z_e = directions[:, e] . u.
+
+    u holds z of one element of every set of parallel ones, so that these share a coordinate, where that is enough.
+    """
     rank = np.linalg.matrix_rank(N)
-    if rank == N.shape[1]:
-        return np.asarray(np.linalg.solve(N.T @ N, N.T).T, dtype=float), np.eye(rank)
+    own, factors = _parallel(N)
+    if rank == len(own):
+        N = N[:, own]
+        return np.asarray(np.linalg.solve(N.T @ N, N.T).T, dtype=float), factors
     V = np.linalg.svd(N)[0][:, :rank]
     return V, V.T @ N
+
+
+def _parallel(N: Floats) -> tuple[list[int], Floats]:
+    """Columns no two of which are parallel, and factors (columns, E) with N = N[:, columns] @ factors."""
+    own: list[int] = []
+    factors = np.zeros((N.shape[1], N.shape[1]))
+    for e, n in enumerate(N.T):
+        for row, first in enumerate(own):
+            share = float(n @ N[:, first]) / float(N[:, first] @ N[:, first])
+            if np.linalg.norm(n - share * N[:, first]) <= _PARALLEL * np.linalg.norm(n):
+                factors[row, e] = share
+                break
+        else:
+            factors[len(own), e] = 1.0
+            own.append(e)
+    return own, factors[: len(own)]
 
 
 def _poles(M: Floats, C: Floats, K: Floats) -> tuple[Complexes, Complexes, Complexes]:

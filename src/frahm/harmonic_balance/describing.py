@@ -1,6 +1,6 @@
-"""First-harmonic responses of one element with any law, searched on a dense grid of amplitudes.
+"""First-harmonic responses of one element, or of parallel ones, with any law, on a dense grid of amplitudes.
 
-With z = m + a cos(tau) the mean of the force depends on m and a only, and so does its first harmonic, but for friction,
+With u = m + a cos(tau) the mean of the force depends on m and a only, and so does its first harmonic, but for friction,
 whose first harmonic depends on a Omega. So the means m that balance are found once, on a grid of amplitudes a; at a
 frequency the first-harmonic balance |S + N| a = |F| is then one equation along each curve m(a), and every change of
 sign and every near miss on the grid is a start for Newton's method. Roots closer than the grid can be missed.
@@ -28,7 +28,7 @@ _NEAR = 0.15  # imbalance per force that still counts as a near miss
 
 @dataclass(frozen=True)
 class Table:
-    """Amplitudes a and means m (rows,) of z that balance the mean force, and the spring's equivalent stiffness N.
+    """Amplitudes a and means m (rows,) of u that balance the mean force, and the springs' equivalent stiffness N.
 
     `links` (pairs, 2) joins rows that follow each other on a curve m(a).
     """
@@ -40,7 +40,6 @@ class Table:
 
     def roots(self, pb: Problem, W: float, S: complex, F: complex) -> list[tuple[complex, complex]]:
         """Mean and first harmonic of u at every first-harmonic solution seen, and at near misses."""
-        d = float(pb.directions[0, 0])
         a = self.amplitude
         N = self.stiffness.astype(complex)
         if pb.rates:
@@ -48,15 +47,15 @@ class Table:
             rates = np.empty(levels.size)
             friction_stiffness(pb, levels, W, rates)
             N += 1j * rates[which]
-        total = S + d * d * N
-        gap = np.abs(total) * a / abs(d) - abs(F)
+        total = S + N
+        gap = np.abs(total) * a - abs(F)
         i, j = self.links.T
         crossed = gap[i] * gap[j] <= 0
         i, j = i[crossed], j[crossed]
         share = np.where(gap[i] == gap[j], 0.5, gap[i] / np.where(gap[i] == gap[j], 1.0, gap[i] - gap[j]))
-        found = [self._solution(d, F, *((1 - share) * value[i] + share * value[j] for value in (a, self.mean, total)))]
+        found = [self._solution(F, *((1 - share) * value[i] + share * value[j] for value in (a, self.mean, total)))]
         near = self._near(gap, abs(F))
-        found.append(self._solution(d, F, a[near], self.mean[near], total[near]))
+        found.append(self._solution(F, a[near], self.mean[near], total[near]))
         return [pair for solutions in found for pair in solutions]
 
     def _near(self, gap: Floats, force: float) -> np.ndarray:
@@ -72,14 +71,14 @@ class Table:
         return np.flatnonzero((size < _NEAR * force) & (size <= beside) & ~crossed)
 
     @staticmethod
-    def _solution(d: float, F: complex, a: Floats, m: Floats, total: Complexes) -> list[tuple[complex, complex]]:
+    def _solution(F: complex, a: Floats, m: Floats, total: Complexes) -> list[tuple[complex, complex]]:
         turn = F / np.where(total == 0, 1.0, total)
-        u = turn / np.where(turn == 0, 1.0, np.abs(turn)) * a / abs(d)
-        return list(zip((m / d).astype(complex).tolist(), u.tolist(), strict=True))
+        u = turn / np.where(turn == 0, 1.0, np.abs(turn)) * a
+        return list(zip(m.astype(complex).tolist(), u.tolist(), strict=True))
 
 
 def amplitude_table(pb: Problem, rest: float, linear: Floats, damped: Floats, symmetric: bool) -> Table | None:
-    """Table of one element for a window of frequencies.
+    """Table of one coordinate u for a window of frequencies.
 
     Parameters
     ----------
@@ -96,15 +95,14 @@ def amplitude_table(pb: Problem, rest: float, linear: Floats, damped: Floats, sy
     Table or None
         None if there is no row.
     """
-    d = float(pb.directions[0, 0])
-    edge = outer_balances(pb, rest / d**2)
-    low = _LOWEST * abs(d) * float(np.min(linear))
-    high = 1.5 * abs(d) * float(np.max(damped)) if np.all(np.isfinite(damped)) else math.inf
+    edge = outer_balances(pb, rest)
+    low = _LOWEST * float(np.min(linear))
+    high = 1.5 * float(np.max(damped)) if np.all(np.isfinite(damped)) else math.inf
     high = min(high, low * 10.0**_MOST_DECADES)
     amplitudes = np.geomspace(low, high, max(2, math.ceil(PER_DECADE * math.log10(high / low)) + 1))
     rows = np.empty((amplitudes.size * 12, 3))
     owner = np.empty(amplitudes.size * 12, np.int64)
-    count = int(fill_rows(pb, rest / d**2, amplitudes, edge, symmetric, rows, owner))
+    count = int(fill_rows(pb, rest, amplitudes, edge, symmetric, rows, owner))
     if count == 0:
         return None
     a, m, N = (np.ascontiguousarray(column) for column in rows[:count].T)
@@ -127,12 +125,22 @@ def _links(owner: np.ndarray, a: Floats, m: Floats) -> np.ndarray:
 
 
 @kernel
+def _force(pb, u, v):
+    """Force [N] of all elements on the coordinate u at its displacement u [m] and velocity v [m/s]."""
+    total = 0.0
+    for e in range(pb.codes.shape[0]):
+        d = pb.directions[0, e]
+        total += d * law_force(pb.codes[e, 0], pb.codes[e, 1], pb.codes[e, 2], pb.table, d * u, d * v)
+    return total
+
+
+@kernel
 def _first_harmonics(pb, m, a):
-    """Mean of the static force [N] for z = m + a cos tau, and its first harmonic per amplitude [N/m]."""
+    """Mean of the static force [N] for u = m + a cos tau, and its first harmonic per amplitude [N/m]."""
     mean = first = 0.0
     for j in range(_SAMPLES):
         c = math.cos(math.pi * (j + 0.5) / _SAMPLES)
-        g = law_force(pb.codes[0, 0], pb.codes[0, 1], pb.codes[0, 2], pb.table, m + a * c, 0.0)
+        g = _force(pb, m + a * c, 0.0)
         mean += g
         first += g * c
     return mean / _SAMPLES, 2.0 * first / (_SAMPLES * a)
@@ -140,14 +148,13 @@ def _first_harmonics(pb, m, a):
 
 @kernel
 def friction_stiffness(pb, a, W, out):
-    """Imaginary equivalent stiffness [N/m] of what depends on the velocity, for z = a cos(W t)."""
-    code = pb.codes[0]
-    still = law_force(code[0], code[1], code[2], pb.table, 0.0, 0.0)
+    """Imaginary equivalent stiffness [N/m] of what depends on the velocity, for u = a cos(W t)."""
+    still = _force(pb, 0.0, 0.0)
     for i in range(a.size):
         total = 0.0
         for j in range(_SAMPLES):
             s = math.sin(math.pi * (j + 0.5) / _SAMPLES)
-            total += (law_force(code[0], code[1], code[2], pb.table, 0.0, a[i] * W * s) - still) * s
+            total += (_force(pb, 0.0, a[i] * W * s) - still) * s
         out[i] = 2.0 * total / (_SAMPLES * a[i])
 
 
@@ -158,12 +165,11 @@ def outer_balances(pb, rest):
     Searched between 1 nm and 10 km.
     """
     outermost = 0.0
-    code = pb.codes[0]
     for side in (-1.0, 1.0):
         last = 0.0
         for i in range(13 * 64 + 1):
             m = side * 10.0 ** (-9.0 + i / 64.0)
-            value = rest * m + law_force(code[0], code[1], code[2], pb.table, m, 0.0)
+            value = rest * m + _force(pb, m, 0.0)
             if value * last < 0.0:
                 outermost = max(outermost, abs(m))
             if value != 0.0:

@@ -17,7 +17,7 @@ from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.orbits import between, describe, locate, same_harmonics
 
 if TYPE_CHECKING:
-    from frahm.harmonic_balance.branches import Search, Track
+    from frahm.harmonic_balance.search import Search, Track
 
 # Moduli this close to one are neutral: a sink without linear spring that hardly moves returns nowhere by itself.
 NEUTRAL = 1e-9

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from frahm.harmonic_balance.branches import Search, Track
+from frahm.harmonic_balance.births import MARGIN
 from frahm.harmonic_balance.describing import PER_DECADE
 from frahm.harmonic_balance.follow import CLOSED, LEFT
+from frahm.harmonic_balance.search import Search, Track
+
+_SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
+
+_NEAR = 0.01  # of a frequency: how far from it a detached curve may be and still reach there
 
 
 def inventory_text(search: Search) -> str:
@@ -12,14 +17,15 @@ def inventory_text(search: Search) -> str:
     seeder, start = search.seeder, ""
     dense = f"first-harmonic roots searched on a dense grid of {PER_DECADE} amplitudes a decade (not proven complete)"
     if seeder.spring is not None:
-        start = "all first-harmonic roots, with every free third harmonic beside them, and near misses of further roots"
-        start += " (a detached curve within about 0.1 % of its birth can be missed)"
+        start = "all first-harmonic roots, with every free third harmonic beside them, and births of detached curves"
         if seeder.table is not None:
             start += f"; about other means than 0 from {dense}"
     elif seeder.table is not None:
         start = dense
+    elif seeder.shared is not None:
+        start = "all first-harmonic solutions, births of detached curves, and motions of equal absorbers alike"
     else:
-        start = "first-harmonic solutions searched from a fixed spread of starts (not proven complete)"
+        start = _SPREAD
         if search.problem.odd and not seeder.buckled:
             start += ", about the mean 0 only"
     return (
@@ -27,6 +33,34 @@ def inventory_text(search: Search) -> str:
         " (period doublings are located, the doubled motions not followed), and responses without any first-harmonic"
         " counterpart."
     )
+
+
+def not_proven(search: Search, at: float | None = None) -> tuple[str, ...]:
+    """A sentence where responses were searched without proof that all were found, in the window or `at` a frequency."""
+    seeder, found = search.seeder, []
+    lo, hi = (search.lo, search.hi) if at is None else ((1 - _NEAR) * at, (1 + _NEAR) * at)
+    for W in search.undecided:
+        if lo <= W <= hi and not _all_known(search, at):
+            found.append(
+                f"Whether a small detached curve exists near {W:.6g} rad/s could not be told: it is born within"
+                f" {MARGIN:.0e} of the force, or its birth could not be located."
+            )
+    if search.problem.directions.shape[0] > 1 and (seeder.shared is None or seeder.buckled):
+        found.append(f"With several absorbers there may be further responses: {_SPREAD}.")
+    if seeder.doubtful:
+        lo, hi = min(seeder.doubtful), max(seeder.doubtful)
+        found.append(
+            f"There may be further responses: at {len(seeder.doubtful)} frequencies between {lo:.6g} and {hi:.6g} rad/s"
+            " the first-harmonic solutions found do not add up to the degree of their equations."
+        )
+    return tuple(found)
+
+
+def _all_known(search: Search, at: float | None) -> bool:
+    """Whether the equations of one harmonic are asked for at a frequency where all their solutions are known."""
+    seeder = search.seeder
+    proven = seeder.shared is not None or (seeder.spring is not None and seeder.table is None)
+    return at is not None and search.harmonics == 1 and proven and at not in seeder.doubtful
 
 
 def unfinished(tracks: list[Track]) -> list[str]:

@@ -11,6 +11,8 @@ from frahm.harmonic_balance.floquet import map_multipliers
 from frahm.harmonic_balance.kernels import fourier_tables, harmonics_of, output_harmonic, sample_count, unknowns
 from frahm.harmonic_balance.newton import correct, resize, tangent
 
+_LOCATED = 1e-6  # of the frequency: half-width up to which a point where branches cross counts as located
+
 
 @kernel
 def peak_of(x, H, odd):
@@ -155,24 +157,13 @@ def locate(pb, va, odd, ya, ta, Ha, yb, tb, Hb, rank, x_scale, w_scale, y, t, mu
     lo, hi = 0.0, 1.0
     if fa * fb > 0.0:
         return False, H, 0.0
-    width = abs(b[n] - a[n])
-    last, f_last = a[n], fa
-    at, y_last, t_last = -1.0, np.empty(y.size), np.empty(t.size)
+    last, f_last, W_lo, W_hi = a[n], fa, a[n], b[n]
     for _ in range(60):
         middle = 0.5 * (lo + hi) if fa == fb else (lo * fb - hi * fa) / (fb - fa)
         if not between(pb, odd, a, sa, b, sb, H, middle, x_scale, w_scale, y, t):
-            # where branches cross the equations are singular: the answer is as near as one can get
-            if abs(middle - at) < 1e-3:
-                y[:], t[:] = y_last, t_last
-                return True, H, abs(middle - at) * width + 1e-12 * last
-            at = middle + 0.05
-            if not between(pb, odd, a, sa, b, sb, H, at, x_scale, w_scale, y, t):
-                return False, H, width
-            f = _critical(pb, va, odd, H, y, t, rank, multipliers)
-            half = 0.05 * width + 1e-12 * last
-            return abs(f) < 0.1 * abs(fb - fa) and half < 1e-6 * last, H, half
-        at = middle
-        y_last[:], t_last[:] = y, t
+            half = _close_in(pb, va, odd, a, sa, b, sb, H, lo, middle, hi, rank, x_scale, w_scale, y, t, multipliers)
+            half += 1e-12 * last
+            return half < _LOCATED * last, H, half
         f = _critical(pb, va, odd, H, y, t, rank, multipliers)
         moved = abs(y[n] - last)
         rest = moved * abs(f) / abs(f - f_last) if f != f_last else 0.0  # what one more secant step would move
@@ -180,12 +171,46 @@ def locate(pb, va, odd, ya, ta, Ha, yb, tb, Hb, rank, x_scale, w_scale, y, t, mu
         if abs(f) < 1e-7 and rest < 1e-11 * last:
             return True, H, rest + 1e-12 * last
         if f * fb < 0.0:
-            lo, fa = hi, fb
-            hi, fb = middle, f
+            lo, fa, W_lo = hi, fb, W_hi
         else:
             fa *= 0.5
-            hi, fb = middle, f
-    return False, H, width
+        hi, fb, W_hi = middle, f, y[n]
+    half = max(abs(W_lo - last), abs(W_hi - last)) + 1e-12 * last  # beside a crossing rounding keeps it from less
+    return half < _LOCATED * last, H, half
+
+
+@kernel
+def _close_in(pb, va, odd, a, sa, b, sb, H, lo, middle, hi, rank, x_scale, w_scale, y, t, multipliers):
+    """Half-width in Omega of an interval around a root at the share `middle` of a step, where Newton's method fails.
+
+    Where branches cross the equations are singular: the interval between `lo` and `hi` closes in on the place from both
+    sides, as near as one can get; y, t receive the nearer end. Infinite if there is nothing to close in from.
+    """
+    n = unknowns(pb, H, odd)
+    ends, tangents, f, at = np.empty((2, y.size)), np.empty((2, y.size)), np.empty(2), np.empty(2)
+    length, half, sign = 0.0, math.inf, 0.0
+    for j in range(n + 1):
+        length += ((b[j] - a[j]) / (w_scale if j == n else x_scale)) ** 2
+    reach = (lo - middle) if abs(lo - middle) > abs(hi - middle) else (middle - hi)  # towards the side of lo
+    for power in range(40):
+        held = True
+        for side in range(2):
+            at[side] = lo if side == 0 else hi
+            if power > 0:
+                at[side] = min(1.0, max(0.0, middle + 0.5**power * (reach if side == 0 else -reach)))
+            held = held and between(pb, odd, a, sa, b, sb, H, at[side], x_scale, w_scale, ends[side], tangents[side])
+            if held:
+                f[side] = _critical(pb, va, odd, H, ends[side], tangents[side], rank, multipliers)
+        if not held or f[0] * f[1] > 0.0 or (sign != 0.0 and f[0] * sign < 0.0):
+            continue  # nearer to the crossing, or where a further change of the step lies outside
+        sign = f[0]
+        width = abs(ends[0, n] - ends[1, n])
+        if rank < 0:  # Omega turns between the ends: its slopes say how far beyond both
+            width = max(width, (abs(f[0]) + abs(f[1])) * abs(at[1] - at[0]) * math.sqrt(length) * w_scale)
+        if width < half:
+            half, near = width, 0 if abs(f[0]) < abs(f[1]) else 1
+            y[:], t[:] = ends[near], tangents[near]
+    return half
 
 
 @kernel

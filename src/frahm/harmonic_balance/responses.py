@@ -9,16 +9,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from frahm.arrays import Complexes, Floats, frozen
-from frahm.harmonic_balance.branches import Search, Track, begin, find_branches
+from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import unstable_count
 from frahm.harmonic_balance.floquet import monodromy, variation_of
+from frahm.harmonic_balance.following import lies_in_step, point_at
 from frahm.harmonic_balance.found import Found
-from frahm.harmonic_balance.inventory import inventory_text, unfinished
+from frahm.harmonic_balance.inventory import inventory_text, not_proven, unfinished
 from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic
 from frahm.harmonic_balance.linear import check_rest, is_linear, linear_exponents, linear_response
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of
+from frahm.harmonic_balance.search import Search, Track, begin
 from frahm.systems import System
 
 _NEIGHBOURHOOD = 0.12
@@ -88,9 +90,11 @@ def periodic_responses_of(system: System, frequency: float, harmonics: int | Non
     if is_linear(system) or not np.any(system.forcing):
         return Found([_linear(system, frequency)], "A linear system has one periodic response.")
     search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
-    tracks = find_branches(search)
+    tracks = find_branches(search, at=frequency)
     found = responses_on(search, tracks, frequency)
-    return Found(found, inventory_text(search), (*search.budget.sentences(), *unfinished(tracks)))
+    return Found(
+        found, inventory_text(search), (*search.budget.sentences(), *not_proven(search, frequency), *unfinished(tracks))
+    )
 
 
 def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> list[PeriodicResponse]:
@@ -110,21 +114,29 @@ def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> l
 
 def _crossings(search: Search, track: Track, W: float) -> list[tuple[Floats, int]]:
     """Solutions of a branch at one frequency, after Newton there with harmonics added as needed."""
-    pb, odd = search.problem, track.odd
     out = []
     for i in np.flatnonzero((track.frequency[:-1] - W) * (track.frequency[1:] - W) <= 0):
         a, b = track.frequency[i], track.frequency[i + 1]
         f = 0.5 if a == b else (W - a) / (b - a)
-        guess = np.zeros(search.size(odd))
+        guess = np.zeros(search.size(track.odd))
         for k, weight in ((i, 1 - f), (i + 1, f)):
-            n = unknowns(pb, track.Hs[k], odd)
+            n = unknowns(search.problem, track.Hs[k], track.odd)
             guess[:n] += weight * track.ys[k, :n]
-        goal = _FINE_GOAL if search.harmonics is None else np.inf
-        H = int(max(track.Hs[i], track.Hs[i + 1]))
-        ok, H, _ = solve_at(pb, odd, W, guess, H, search.highest, goal, 15)
-        if ok:
-            out.append((guess, H))
+        found = _solved(search, track.odd, W, guess, int(max(track.Hs[i], track.Hs[i + 1])))
+        if a != b and (found is None or not lies_in_step(search, track, *found, W, int(i))):
+            # beside a special point another orbit is nearer to the chord than that of the branch
+            start = point_at(search, track, int(i), W)
+            found = None if start is None else _solved(search, track.odd, W, *start)
+        if found is not None:
+            out.append(found)
     return out
+
+
+def _solved(search: Search, odd: bool, W: float, X: Floats, H: int) -> tuple[Floats, int] | None:
+    """The solution at Omega = W near X, with harmonics added as needed."""
+    goal = _FINE_GOAL if search.harmonics is None else np.inf
+    ok, H, _ = solve_at(search.problem, odd, W, X, H, search.highest, goal, 15)
+    return (X, H) if ok else None
 
 
 def _mirrored(search: Search, X: Floats, H: int) -> Floats:

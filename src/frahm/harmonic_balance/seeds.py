@@ -1,27 +1,27 @@
 """Where branches are looked for: every root of the first-harmonic problem, and of the superharmonic ones.
 
-With one nonlinear element whose spring is an odd polynomial, the first-harmonic problem S Z + k(|Z|^2) Z = F is one
-polynomial in |Z|^2, so its roots are known completely at any frequency; the same holds for a free third harmonic beside
-a given first one. With one element of any other law, and for motions about another mean than 0, the roots are searched
-on a dense grid of amplitudes (`describing`). With several elements they are searched by Newton's method from a fixed,
-spread set of starts. The result says which.
+With one nonlinear element, or parallel ones, whose springs are odd polynomials, the first-harmonic problem
+S Z + k(|Z|^2) Z = F is one polynomial in |Z|^2, so its roots are known completely at any frequency; the same holds for
+a free third harmonic beside a given first one. With one element of any other law, and for motions about another mean
+than 0, the roots are searched on a dense grid of amplitudes (`describing`). Those of several cubic elements that one
+motion drives are found along one unknown (`shared_drive`); otherwise, with several elements, they are searched by
+Newton's method from a fixed, spread set of starts. The result says which.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Complexes, Floats
-from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import Problem, unknowns
+from frahm.harmonic_balance.condensation import Problem, stiffness_at, unknowns
 from frahm.harmonic_balance.describing import Table, amplitude_table, outer_balances
-from frahm.harmonic_balance.kernels import stiffness
 from frahm.harmonic_balance.newton import solve_at
-from frahm.polynomials import universal_roots
+from frahm.harmonic_balance.shared_drive import shared_stiffnesses, solutions_at
+from frahm.polynomials import cubic_roots
 
 _STARTS = 48
 _TWO_HARMONIC_STARTS = 16
@@ -36,56 +36,33 @@ class Seed:
     harmonics: dict[int, Complexes]
 
 
-@kernel
-def cubic_roots(S, F, k):
-    """|Z|^2 of all solutions of S Z + k |Z|^2 Z = F, ascending: their number and three values."""
-    D, load = abs(S) ** 2, abs(F) ** 2
-    if k == 0.0 or load == 0.0 or D == 0.0:
-        if D == 0.0 and k != 0.0 and load > 0.0:
-            return 1, np.cbrt(load / (k * k)), math.nan, math.nan
-        return (1 if D > 0.0 else 0), (load / D if D > 0.0 else math.nan), math.nan, math.nan
-    c = math.copysign(1.0, k) * S.real / math.sqrt(D)
-    count, m1, m2, m3 = universal_roots(c, abs(k) * load / D**1.5)
-    scale = math.sqrt(D) / abs(k)
-    return count, m1 * scale, m2 * scale, m3 * scale
+@dataclass(frozen=True)
+class Extreme:
+    """A first-harmonic motion at which the force it needs is extreme over amplitude and Omega, see `births`.
 
-
-@kernel
-def count_cubic(pb, Ws, k, counts, excess):
-    """Number of first-harmonic roots at every frequency and, where there is one, how far three are away.
-
-    `excess` is the discriminant of the cubic, positive where there are three roots.
+    sign is +1 for a minimum and -1 for a maximum; `odd` says whether it is followed without even harmonics.
     """
-    S, dS = np.empty((1, 1), np.complex128), np.empty((1, 1), np.complex128)
-    f, df = np.empty(1, np.complex128), np.empty(1, np.complex128)
-    for i in range(Ws.size):
-        stiffness(pb, 1j * Ws[i], S, dS, f, df)
-        counts[i] = cubic_roots(S[0, 0], f[0], k)[0]
-        D = abs(S[0, 0]) ** 2
-        c = math.copysign(1.0, k) * S[0, 0].real / math.sqrt(D)
-        h = abs(k) * abs(f[0]) ** 2 / D**1.5
-        excess[i] = 4.0 * c * c - 4.0 + h * (32.0 * c * c * c - 36.0 * c - 27.0 * h)
 
+    frequency: float
+    harmonics: dict[int, Complexes]
+    sign: int
+    odd: bool
 
-def stiffness_at(pb: Problem, k: int, W: float) -> tuple[Complexes, Complexes]:
-    """S (r, r) [N/m] and condensed force (r,) [N] at harmonic k of Omega = W [rad/s]."""
-    r = pb.M11.shape[0]
-    S, dS = np.empty((r, r), complex), np.empty((r, r), complex)
-    f, df = np.empty(r, complex), np.empty(r, complex)
-    stiffness(pb, 1j * k * W, S, dS, f, df)
-    return S, f
+    @property
+    def largest(self) -> int:
+        """Coordinate with the largest first harmonic."""
+        return int(np.argmax(np.abs(self.harmonics[1])))
 
 
 def spring_polynomial(pb: Problem) -> Floats | None:
-    """Coefficients e_i of k(N) = sum_i e_i N^i, equivalent stiffness at N = |Z|^2, for one odd polynomial element."""
-    if pb.directions.shape != (1, 1) or pb.degree == 0 or not pb.odd:
+    """Coefficients e_i of k(N) = sum_i e_i N^i, equivalent stiffness at N = |U|^2, of the odd polynomials at u = U."""
+    if pb.directions.shape[0] != 1 or pb.degree == 0 or not pb.odd:
         return None
-    start, count = pb.codes[0, 1], pb.codes[0, 2]
-    c = pb.table[start + 1 : start + 1 + count][::-1]  # c_1 ... c_p
-    e = np.zeros((count + 1) // 2)
-    for k in range(1, count + 1, 2):
-        e[(k - 1) // 2] = c[k - 1] * math.comb(k, (k - 1) // 2) / 2 ** (k - 1)
-    e *= pb.directions[0, 0] ** 2 ** np.arange(1, e.size + 1)
+    e = np.zeros((int(np.max(pb.codes[:, 2])) + 1) // 2)
+    for (_, start, count), d in zip(pb.codes, pb.directions[0], strict=True):
+        c = pb.table[start + 1 : start + 1 + count][::-1]  # c_1 ... c_p
+        for k in range(1, count + 1, 2):
+            e[(k - 1) // 2] += c[k - 1] * math.comb(k, (k - 1) // 2) / 2 ** (k - 1) * d ** (k + 1)
     return e[: max(1, int(np.max(np.nonzero(e)[0], initial=0)) + 1)]
 
 
@@ -109,39 +86,11 @@ def single_element_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
     for N in amplitude_roots(S[0, 0], F[0], e):
         Z = F[0] / (S[0, 0] + np.polynomial.polynomial.polyval(N, e))
         seeds.append(Seed(W, {1: np.array([Z])}))
-        seeds += [Seed(W, {1: np.array([Z]), 3: np.array([Z3])}) for Z3 in _third_harmonics(S3[0, 0], Z, e)]
+        seeds += [Seed(W, {1: np.array([Z]), 3: np.array([Z3])}) for Z3 in third_harmonics(S3[0, 0], Z, e)]
     return seeds
 
 
-def almost_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
-    """Starts where the first harmonic nearly has a pair of further roots: the exact equations may have them.
-
-    They lie around the turning points of |S + k(N)|^2 N, or its point of inflection.
-    """
-    S, F = stiffness_at(pb, 1, W)
-    seeds = []
-    for N in _turning_amplitudes(complex(S[0, 0]), e):
-        Z = F[0] / (S[0, 0] + np.polynomial.polynomial.polyval(N, e))
-        seeds.append(Seed(W, {1: np.array([Z * math.sqrt(N) / abs(Z)])}))
-    return seeds
-
-
-def _turning_amplitudes(S: complex, e: Floats) -> set[float]:
-    """|Z|^2 at and beside the turning points of the load, or where they are about to appear."""
-    if e.size == 2 and e[0] == 0:
-        size, k = abs(S), e[1]
-        c = math.copysign(1.0, k) * S.real / size
-        spread = math.sqrt(max(4 * c * c - 3, 0.0))
-        found = {(-2 * c + part * spread) / 3 * size / abs(k) for part in (-1.2, -0.8, 0.0, 0.8, 1.2)}
-        return {N for N in found if N > 0}
-    real = np.polynomial.Polynomial([S.real + e[0], *e[1:]])
-    load = np.polynomial.Polynomial([0, 1]) * (real * real + S.imag**2)
-    turns = load.deriv().trim().roots()
-    turns = turns[(turns.real > 0) & (np.abs(turns.imag) < 0.5 * np.abs(turns.real))]
-    return {float(share * N) for N in turns.real for share in (0.85, 1.0, 1.15)}
-
-
-def _third_harmonics(S3: complex, Z: complex, e: Floats) -> list[complex]:
+def third_harmonics(S3: complex, Z: complex, e: Floats) -> list[complex]:
     """Third harmonics that a cubic spring admits beside Z, when there is more than the one that vanishes with it."""
     if e.size < 2:
         return []
@@ -212,6 +161,8 @@ class Seeder:
     spring: Floats | None  # equivalent stiffness of one odd polynomial element, see `spring_polynomial`
     table: Table | None  # of one element otherwise, or of its motions about other means
     buckled: bool  # whether an odd system has other equilibria, wells or tops, about which it may respond
+    shared: Floats | None = None  # cubic stiffnesses of several coordinates that one motion drives, see `shared_drive`
+    doubtful: set[float] = field(default_factory=set)  # frequencies at which not all of their solutions were found
 
     def at(self, W: float, scale: float, first_only: bool = False) -> list[Seed]:
         """All starts at Omega = W [rad/s]; `first_only` leaves out free third harmonics and searches."""
@@ -225,27 +176,32 @@ class Seeder:
             for mean, u in self.table.roots(pb, W, complex(S[0, 0]), complex(F[0])):
                 still = {} if pb.odd and mean == 0 else {0: np.array([mean])}
                 seeds.append(Seed(W, {**still, 1: np.array([u])}))
-        if pb.directions.shape == (1, 1):
+        if pb.directions.shape[0] == 1:
             return seeds
         if first_only:
             S, F = stiffness_at(pb, 1, W)
             return [Seed(W, {1: np.asarray(np.linalg.solve(S, F), dtype=complex)})]
-        seeds = searched_seeds(pb, W, scale, pb.odd)
+        seeds = searched_seeds(pb, W, scale, pb.odd) if self.shared is None else self._shared_seeds(W, self.shared)
         return seeds + searched_seeds(pb, W, scale, False) if self.buckled else seeds
+
+    def _shared_seeds(self, W: float, k: Floats) -> list[Seed]:
+        found = solutions_at(self.problem, W, k)
+        if not found.complete:
+            self.doubtful.add(W)
+        return [Seed(W, {1: u}) for u in found.harmonics]
 
 
 def seeder_for(pb: Problem, window: Floats) -> Seeder:
     """Seeder of a condensed problem for frequencies spread over a window [rad/s]."""
     spring = spring_polynomial(pb)
-    if pb.directions.shape != (1, 1):
-        return Seeder(pb, None, None, pb.odd and _may_buckle(pb))
+    if pb.directions.shape[0] != 1:
+        return Seeder(pb, None, None, pb.odd and _may_buckle(pb, float(window[0])), shared_stiffnesses(pb, window))
     rest = float(stiffness_at(pb, 0, 1.0)[0][0, 0].real)
     if abs(rest) < _ROUNDING * abs(stiffness_at(pb, 1, float(window[0]))[0][0, 0]):
         rest = 0.0  # of an absorber that nothing but its nonlinear spring holds: its rounding makes no two wells
-    d = float(pb.directions[0, 0])
     if spring is not None and rest >= 0 and np.all(spring >= 0):
         return Seeder(pb, spring, None, False)
-    buckled = bool(pb.odd and outer_balances(pb, rest / d**2) > 0)
+    buckled = bool(pb.odd and outer_balances(pb, rest) > 0)
     if spring is not None and not buckled:
         return Seeder(pb, spring, None, False)
     parts = [stiffness_at(pb, 1, float(W)) for W in window]
@@ -257,9 +213,13 @@ def seeder_for(pb: Problem, window: Floats) -> Seeder:
     return Seeder(pb, spring, table, buckled)
 
 
-def _may_buckle(pb: Problem) -> bool:
-    """Whether the middle, or an element by itself, may be unstable without motion."""
+def _may_buckle(pb: Problem, W: float) -> bool:
+    """Whether the middle, or an element by itself, may be unstable without motion.
+
+    An absorber that nothing but its nonlinear spring holds has no static stiffness; its rounding is none either.
+    """
     K = stiffness_at(pb, 0, 1.0)[0].real.copy()
+    K[np.abs(K) < _ROUNDING * np.max(np.abs(stiffness_at(pb, 1, W)[0]))] = 0.0
     for e, code in enumerate(pb.codes):
         slope = law_force_and_slopes(code[0], code[1], code[2], pb.table, 0.0, 0.0)[1]
         K += slope * np.outer(pb.directions[:, e], pb.directions[:, e])

@@ -20,7 +20,7 @@ from frahm.harmonic_balance import (
     linear_response,
     resonant_grid,
 )
-from frahm.harmonic_balance.inventory import inventory_text, unfinished
+from frahm.harmonic_balance.inventory import inventory_text, not_proven, unfinished
 from frahm.response.curve import ResponseCurve, SpecialPoint
 from frahm.systems import System, detuning_of
 
@@ -58,7 +58,7 @@ def curve_and_branches(
 
 
 def _assembled(system: System, tracks: list[Track], search: Search, settings: dict[str, Any]) -> ResponseCurve:
-    special, doubtful = [], list(search.budget.sentences())
+    special, doubtful = [], [*search.budget.sentences(), *not_proven(search)]
     for number, track in enumerate(tracks):
         for event in track.events:
             W, _, _, pipe, relative = (float(value) for value in event.columns)

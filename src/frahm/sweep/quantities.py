@@ -188,6 +188,7 @@ def _responses(point: Point, asked: Any) -> Found:
     doubts: tuple[str, ...] = (
         () if found else ("No periodic response was found: Newton's method failed from every seed.",)
     )
+    doubts += found.unverified
     residual = max((response.residual for response in found), default=0.0)
     if residual > _ROUGH and point.case.analysis.harmonics == "auto":
         doubts += (f"Up to {100 * residual:.2g} % of the forces lie beyond the highest harmonic there is room for.",)
@@ -239,6 +240,7 @@ def _attractors(point: Point, asked: Any) -> Found:
         for motion in unsettled
         if motion.basin_fraction >= asked.min_basin
     )
+    doubts += found.unverified
     return Found(
         {
             "pipe_peak": worst.pipe_peak,

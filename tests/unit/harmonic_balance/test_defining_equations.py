@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.harmonic_balance.branches import begin, find_branches
+from frahm.harmonic_balance import begin, find_branches
 from frahm.harmonic_balance.condensation import CondensedChange, coordinates, linear_part, unknowns
 from frahm.harmonic_balance.detached import _second_derivatives
 from frahm.harmonic_balance.equations import FoldEquations, TorusEquations

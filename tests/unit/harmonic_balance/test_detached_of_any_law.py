@@ -30,7 +30,7 @@ def test_a_vanishing_fifth_power_changes_nothing(force):
     other = with_parameters(quintic(1e-3), force=force)
     one, two = (frahm.frequency_response(system, frequency=WIDE) for system in (cubic, other))
     assert one.detached == two.detached == ((False,) if force < 1.06 else (False, True))
-    assert two.pipe_peak.max() == pytest.approx(one.pipe_peak.max(), rel=1e-6)
+    assert two.pipe_peak.max() == pytest.approx(one.pipe_peak.max(), rel=1e-4)  # of the points of either
 
 
 @pytest.mark.parametrize("force", [1.15, 1.2])
@@ -57,12 +57,13 @@ def test_roots_are_counted_as_the_polynomial_has_them():
     grid = np.linspace(*WIDE, 301)
     parts = [stiffness_at(problem, 1, float(W)) for W in grid]
     S, F = (np.array([part[k].flat[0] for part in parts]) for k in (0, 1))
-    counts, excess = polynomial_counts(e, S, F)
+    counts, turns = polynomial_counts(e, S, F)
     exact = [len(amplitude_roots(s, f, e)) for s, f in zip(S, F, strict=True)]
     assert set(exact) == {1, 3}
-    # two roots nearer than the grid of amplitudes are one near miss
+    # two roots nearer than the grid of amplitudes are one turn of the force very near to that which there is
     assert np.mean(counts == exact) > 0.98
-    assert np.all(excess[counts != exact] > -0.05)
+    for w in np.flatnonzero(counts != exact):
+        assert np.min(np.abs(turns[turns[:, 0] == w, 2])) < 0.05
 
 
 @pytest.mark.parametrize("place", [27.0, 28.7, 30.8625, 31.2])
@@ -102,3 +103,23 @@ def test_the_part_cut_off_is_the_first_branch_of_the_wide_window():
     (low,) = (b for b in narrow.branches if b.detuning.min() > 0.05 and b.detuning.max() > 0.399)
     (peak,) = crossings(low, 0.2)[:1]
     assert any(other == pytest.approx(peak, rel=0.02) for other in crossings(wide.branches[0], 0.2))
+
+
+@pytest.mark.parametrize(("law", "bounds"), [("transverse springs", (1.1, 1.14)), ("stops", (1.05, 1.08))])
+def test_a_detached_curve_of_any_law_is_found_however_near_its_birth(law, bounds):
+    length, cubic = 4 * 0.0132, {"kind": "cubic", "stiffness": MASS * KAPPA}
+    if law == "stops":
+        system = sink(cubic)
+        stopped = frahm.Cubic(
+            MASS * KAPPA, system.elements[0].law.damping, stops=frahm.Stops(gap=0.03, stiffness=2e3, depth=0.01)
+        )
+        parts = (system.mass, system.damping, system.stiffness, system.forcing)
+        element = frahm.Element(system.elements[0].direction, stopped)
+        system = frahm.System(*parts, [element], reference_frequency=system.reference_frequency)
+    else:
+        system = sink({"kind": "transverse-springs", "stiffness": MASS * KAPPA * length**2, "length": length})
+    (birth,) = frahm.detached_curve_events(system, "force", bounds, frequency=WIDE, slices=2)
+    assert birth.kind == "birth"
+    for beside, there in ((-1e-5, False), (1e-5, True), (5e-4, True)):
+        curve = frahm.frequency_response(with_parameters(system, force=birth.value * (1 + beside)), frequency=WIDE)
+        assert any(curve.detached) == there
