@@ -273,11 +273,26 @@ def test_a_folder_of_the_same_case_is_written_again_and_another_only_by_force(tm
 
 def test_what_is_unverified_is_named_and_ends_in_3(tmp_path):
     case = tmp_path / "short.yaml"
-    QUICK.with_analysis(periods=100).to_yaml(case)
+    QUICK.with_analysis(detuning=(0.05, 0.4)).to_yaml(case)
     result = CliRunner().invoke(app, ["run", str(case), "--out", str(tmp_path / "o")])
     assert result.exit_code == 3
-    assert "has not settled" in result.stderr
+    assert "sits at the lower end of the range" in result.stderr
     assert json.loads((tmp_path / "o" / "summary.json").read_text())["unverified"]
+
+
+@pytest.mark.parametrize(("displacement", "code"), [("20 mm", 4), ("2 m", 0)])
+def test_a_figure_of_a_transient_does_not_keep_the_answer_from_being_verified(tmp_path, displacement, code):
+    case = tmp_path / "short.yaml"
+    asked = QUICK.with_analysis(periods=100).to_dict() | {"limits": {"displacement": displacement}}
+    frahm.load_case(asked).to_yaml(case)
+    result = CliRunner().invoke(app, ["run", str(case), "--out", str(tmp_path / "o")])
+    assert result.exit_code == code
+    assert "has not settled" not in result.stderr
+    summary = json.loads((tmp_path / "o" / "summary.json").read_text())
+    assert summary["unverified"] == []
+    assert summary["results"]["acceptance"]["verdict"] == ("pass" if code == 0 else "fail")
+    assert {row["kind"] for row in summary["results"]["motions"]} == {"unsettled"}
+    assert any("has not settled within 100 periods" in note for note in summary["results"]["notes"])
 
 
 def test_progress_is_shown_on_a_terminal(tmp_path):

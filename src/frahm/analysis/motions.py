@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm.analysis.linear import bare_amplitude
-from frahm.analysis.points import PointOfInterest, points_of_interest
+from frahm.analysis.points import DESIGN_WIND, PointOfInterest, points_of_interest
 from frahm.analysis.ranges import growth_rates_at
 from frahm.analysis.section import FAIL, PASS, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import KINDS, envelope_of, judge
 from frahm.arrays import Floats, labelled
+from frahm.harmonic_balance import is_linear
 from frahm.systems import System
 from frahm.time_integration import TimeHistory, integrate, integrate_batch
 
@@ -65,17 +66,17 @@ def motions(work: Work) -> Section:
     found = [_motion(work, point) for point in points[:_MOST_POINTS]]
     unsettled = [motion for motion in found if motion.kind == "unsettled"]
     periods = work.case.analysis.periods
-    doubts = tuple(
-        f"The motion from rest at detuning {motion.point.detuning:.4g} rad/s has not settled within {periods} periods. "
-        + (motion.history.outcome.value if not motion.history.outcome.ok else "Raise analysis.periods.")
+    notes = tuple(
+        f"The motion from rest {motion.point.place} has not settled within {periods} periods:"
+        " its figure ends in a transient, which is no part of the answer."
         for motion in unsettled
     )
     return Section(
         results={"motions": [_summary(motion) for motion in found]},
         data={"motions": _motions_dataset(found), "spectra": _spectra_dataset(found)},
         checks=(_finished(found), *_expected(work, found)),
-        unverified=doubts,
         notes=(
+            *notes,
             "These motions were integrated from rest: another start can lead to another motion.",
             *_left_out(points[_MOST_POINTS:]),
         ),
@@ -89,11 +90,14 @@ def _left_out(points: list[PointOfInterest]) -> Iterable[str]:
 
 
 def _motion(work: Work, point: PointOfInterest) -> Motion:
-    system = work.driven(work.system.reference_frequency + point.detuning)
+    system = work.system if point.key == DESIGN_WIND else work.driven(work.system.reference_frequency + point.detuning)
     history, start = _followed(system, point.detuning, work.case.analysis.periods)
     tail = history.last(max(1, math.floor(_TAIL * history.periods)))
     kind, spread = judge(history)
-    bare = float(bare_amplitude(work.case, history.frequency, work.range)[0])
+    if kind == "modulated" and is_linear(system):  # what beats there is free motion that still dies out
+        kind = "unsettled"
+    within = None if point.key == DESIGN_WIND else work.range  # the range may leave the design wind out
+    bare = float(bare_amplitude(work.case, history.frequency, within)[0])
     return Motion(point, history, tail, start, kind, spread, bare)
 
 

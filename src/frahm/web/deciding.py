@@ -30,12 +30,13 @@ def decision(case: Case, progress: Callable[[str, int, int], None], *, device: s
     """
     from frahm.analysis.acceptance import acceptance, judged_limits
     from frahm.analysis.fatigue import fatigue
+    from frahm.analysis.largest import largest_motion
     from frahm.analysis.linear import without_absorber
     from frahm.analysis.long_term import worst
     from frahm.analysis.motions import motions
     from frahm.analysis.response import exact_response
     from frahm.analysis.section import FAIL, UNVERIFIED, Work
-    from frahm.analysis.verdict import largest_motion, lock_in
+    from frahm.analysis.verdict import lock_in
     from frahm.assessment import accepted, utilisations
 
     if device == "bare":
