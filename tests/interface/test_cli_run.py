@@ -7,6 +7,7 @@ import pty
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -217,7 +218,9 @@ def test_the_report_stands_alone(finished, summary):
     assert "default-src 'none'" in own
     assert '"showSendToCloud": false' in text
     assert '"displaylogo": false' in text
-    assert summary["results"]["verdict"] in own
+    judged = summary["results"]["acceptance"]["sentence"]  # the banner
+    assert summary["results"]["verdict"].startswith(judged)
+    assert summary["results"]["verdict"].removeprefix(judged).strip() in own
     assert own.index(summary["results"]["verdict"]) < own.index("<h2>")
     for point in ("H1", "NS1", "SN1", "SN2", CASE.digest, "✓ pass", "@media print"):
         assert point in own
@@ -278,6 +281,20 @@ def test_what_is_unverified_is_named_and_ends_in_3(tmp_path):
     assert result.exit_code == 3
     assert "sits at the lower end of the range" in result.stderr
     assert json.loads((tmp_path / "o" / "summary.json").read_text())["unverified"]
+
+
+@pytest.mark.parametrize("name", ["chimney", "table"])
+def test_a_case_without_limits_is_not_judged_and_nothing_failed(tmp_path, name):
+    case = Path(__file__).parents[1] / "cases" / f"{name}.yaml"
+    result = CliRunner().invoke(app, ["run", str(case), "--out", str(tmp_path / "o")])
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.startswith("NOT JUDGED: the case gives no limit")
+    found = json.loads((tmp_path / "o" / "summary.json").read_text())["results"]["acceptance"]
+    assert (found["verdict"], found["utilisation"]) == ("not verified", {})
+    assert "gives no limit" in found["sentence"]
+    html = (tmp_path / "o" / "report.html").read_text()
+    assert '<p class="word">NOT JUDGED</p>' in html
+    assert 'class="banner pass"' not in html
 
 
 @pytest.mark.parametrize(("displacement", "code"), [("20 mm", 4), ("2 m", 0)])

@@ -121,7 +121,7 @@ class Analysis:
 
     @property
     def accepted(self) -> bool:
-        """Whether no limit of the case is exceeded; where nothing was judged nothing is."""
+        """Whether no limit of the case is exceeded; where nothing was judged, none is."""
         return bool(self.results.get("acceptance", {}).get("verdict") != "fail")
 
     def summary(self) -> dict[str, Any]:

@@ -29,8 +29,8 @@ def verdict(results: dict[str, Any], failed: int, unverified: int) -> str:
 
 
 def _about_acceptance(results: dict[str, Any]) -> list[str]:
-    found = results.get("acceptance", {})
-    return [found["sentence"]] if found.get("rows") else []
+    found = results.get("acceptance")
+    return [] if found is None else [found["sentence"]]
 
 
 def _about_largest(results: dict[str, Any]) -> list[str]:

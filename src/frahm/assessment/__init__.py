@@ -1,6 +1,6 @@
 """Room `assessment`: stress histories, cycles and fatigue damage over the attractors and the wind climate."""
 
-from frahm.assessment.acceptance import Utilisation, accepted, utilisations
+from frahm.assessment.acceptance import Utilisation, accepted, headline, utilisations
 from frahm.assessment.all_modes import damage_of_modes, doubts_of_modes, total_damage
 from frahm.assessment.closed_forms import constant_range_damage, weibull_damage
 from frahm.assessment.damage import FatigueDamage
@@ -20,6 +20,7 @@ __all__ = [
     "damage_of_modes",
     "device_row",
     "doubts_of_modes",
+    "headline",
     "fatigue_damage",
     "rainflow_cycles",
     "stress_places",

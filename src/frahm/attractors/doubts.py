@@ -1,4 +1,4 @@
-"""What speaks against the worst motion of a range: its place at an end, larger motions beside it, what did not settle."""
+"""What speaks against the worst motion of a range: its place at an end, a larger one beside it, what did not settle."""
 
 from __future__ import annotations
 

@@ -147,8 +147,8 @@ def worst_case(
 
     The frequencies looked at are spread over the range, stand beside the special points of the exact response curve
     and at its stable maxima; around the worst they are then halved until its frequency is known to 0.03 %. The worst
-    is unverified if it sits at an end of the range and something excites the pipe, if the range widened by half has a motion larger by more than 1 %,
-    or if a stable response with a smaller basin is larger by more than 1 %.
+    is unverified if it sits at an end of the range while something excites the pipe, if the range widened by half has a
+    motion larger by more than 1 %, or if a stable response with a smaller basin is larger by more than 1 %.
 
     Parameters
     ----------

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from frahm import readable
+from frahm.assessment import headline
 from frahm.plotting.decision import DEVICES
 
 DEVICE_HEAD = [
@@ -21,12 +22,12 @@ _BAR = 1.5  # utilisation that fills the bar
 def banner(acceptance: Mapping[str, Any]) -> tuple[str, str, str]:
     """Status for the colour, the verdict in capitals, and the sentence behind it.
 
-    A case without limits is not coloured as one that keeps them.
+    A case without limits is not coloured as one that was judged.
     """
-    word = str(acceptance["verdict"])
-    status = "open" if word == "pass" and not acceptance["rows"] else _STATUS[word]
-    sentence = str(acceptance["sentence"]).removeprefix(word.upper()).lstrip(":. ")
-    return status, word.upper(), sentence[:1].upper() + sentence[1:]
+    word = headline(acceptance)
+    status = _STATUS[acceptance["verdict"]] if acceptance["rows"] else "open"
+    sentence = str(acceptance["sentence"]).removeprefix(word).lstrip(":. ")
+    return status, word, sentence[:1].upper() + sentence[1:]
 
 
 def limit_rows(acceptance: Mapping[str, Any]) -> list[tuple[str, str, str, float]]:

@@ -207,7 +207,8 @@ def test_what_the_slow_flow_cannot_treat_has_an_exact_response():
     # the window leaves the resonance out, and nothing else is in doubt
     assert done.unverified
     assert all(re.match("The worst motion sits at the lower end", doubt) for doubt in done.unverified)
-    assert any("Outside the range asked about, at detuning 0 rad/s" in note and "15.1 mm" in note for note in done.notes)
+    (outside,) = (note for note in done.notes if note.startswith("Outside the range asked about, at detuning 0 rad/s"))
+    assert "15.1 mm" in outside
     assert done.results["largest_motion"]["pipe_peak"] == done.results["worst_case"]["pipe_peak"] < 0.0151
     assert set(done.results["response"]) == {"harmonic-balance"}
     assert any("one mode with one cubic sink" in note for note in done.notes)
