@@ -30,7 +30,7 @@ def save_figures(results: dict[str, Any], data: dict[str, xr.Dataset], folder: s
     paths = []
     with figure_style():
         for name, draw in drawings(results, data):
-            paths += save_figure(draw(), Path(folder) / name)
+            paths += save_figure(draw(), Path(folder) / name, narrow=name == "decision")
     for name, dataset in figure_data(results, data):
         paths += write_data(dataset, Path(folder) / f"{name}.csv")
     return paths

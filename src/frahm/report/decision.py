@@ -62,7 +62,7 @@ def _place(row: Mapping[str, Any]) -> str:
     speed = row["wind_speed"]
     if speed is not None and math.isfinite(speed):
         return readable.speed(speed)
-    return "-" if row["detuning"] is None else f"σ = {round(row['detuning'], 4):.3g} rad/s"
+    return "-" if row["detuning"] is None else f"σ = {round(row['detuning'], 4) + 0.0:.3g} rad/s"
 
 
 def _life(row: Mapping[str, Any]) -> str:

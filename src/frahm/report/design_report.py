@@ -7,8 +7,6 @@ import math
 from pathlib import Path
 from typing import Any
 
-import jinja2
-
 from frahm import readable
 from frahm.analysis import defaulted_fields, provenance
 from frahm.analysis.decision import together
@@ -16,11 +14,12 @@ from frahm.case import Case, Design, field_table, field_values
 from frahm.design import DesignStudy, Objective, Rival, design_summary
 from frahm.errors import ParameterError
 from frahm.files import write_text
-from frahm.loads import lock_in_band, vortex_shedding
+from frahm.loads import lock_in_band, resonant_shedding, vortex_shedding
 from frahm.plotting.decision import DEVICES, Marks
 from frahm.plotting.design_figures import save_design_figures
 from frahm.report import decision
 from frahm.report.document import document_rows
+from frahm.report.environment import template
 from frahm.report.references import reference_rows
 from frahm.report.report import REPORT_FILE, image_address
 from frahm.report.tables import input_rows, number
@@ -50,13 +49,8 @@ def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
 
 def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
     """The report as HTML text; `images` are addresses of the figures by name."""
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("frahm.report", "."), autoescape=True, trim_blocks=True, lstrip_blocks=True,
-        keep_trailing_newline=True, undefined=jinja2.StrictUndefined,
-    )  # fmt: skip
-    environment.filters["length_text"] = readable.length
     objective = study.objective
-    return environment.get_template("design.html.jinja").render(
+    return template("design.html.jinja").render(
         study=study,
         **_head(study),
         asked=asked_rows(study),
@@ -133,7 +127,8 @@ def least_stroke(study: DesignStudy) -> str:
     """Motion of the mass below which no absorber balances the force, at the pipe's frequency."""
     ratio = study.best.design.rho2 if study.best.design else math.nan
     case = study.case
-    return readable.length(vortex_shedding(case).lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
+    lift = resonant_shedding(case).lift * float(case.pipe.modal.lift_lengths[0]) / case.pipe.length
+    return readable.length(lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
 
 
 def asked_rows(study: DesignStudy) -> list[tuple[str, ...]]:

@@ -9,7 +9,6 @@ import zlib
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import numpy as np
 from markupsafe import Markup
 
@@ -26,10 +25,12 @@ from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
 from frahm.plotting.wind import gusts_plot
 from frahm.report import decision, fatigue_tables, tables
 from frahm.report.document import document_rows
+from frahm.report.environment import template
 from frahm.report.references import reference_rows
 
 REPORT_FILE = "report.html"
 _MOST_MOTIONS = 8
+_DRAWN = ("decision", "decision-narrow")  # not interactive
 _LONG_COORDINATE = re.compile(r"(\.\d)\d+")
 _PATH = re.compile(r' d="[^"]*"')
 
@@ -63,20 +64,9 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
     images : dict of str
         Figures by name as SVG text: for paper, and for readers without JavaScript.
     """
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("frahm.report", "."),
-        autoescape=True,
-        trim_blocks=True,
-        keep_trailing_newline=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    environment.filters["number"] = tables.number
-    environment.filters["length_text"] = readable.length
-    environment.filters["with_indices"] = tables.with_indices
     views = motion_views(analysis.results, analysis.data)
     plots = _plots(analysis, views)
-    return environment.get_template("report.html.jinja").render(
+    return template("report.html.jinja").render(
         analysis=analysis,
         **_head(analysis),
         cards=cards(analysis.results),
@@ -88,7 +78,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         more_motions=max(0, len(views) - _MOST_MOTIONS),
         plots=plots,
         zoomed='"narrow":' in plots.get("response-pipe", ""),
-        images={name: image_address(svg) for name, svg in images.items() if name in {*plots, "decision"}},
+        images={name: image_address(svg) for name, svg in images.items() if name in {*plots, *_DRAWN}},
         plotly_js=packed_plotly(),
         plotly_config=CONFIG,
     )

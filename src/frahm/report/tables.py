@@ -16,6 +16,7 @@ from frahm.case import Case, field_values
 from frahm.case.fields import FieldValue
 from frahm.loads import vortex_shedding
 
+_PLAIN = 6  # a number below ten to this power is written out
 _LISTED = 12  # pairs of a table that are still written out
 _MARKS = {"pass": "✓ pass", "fail": "✗ fail", "unverified": "? unverified"}
 
@@ -48,7 +49,13 @@ def number(value: Any, digits: int = 4) -> str:
     """A number for people; what is not known is a dash."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return "-"
-    return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return str(value)
+    text = f"{value:.{digits}g}"
+    if "e" not in text:
+        return text
+    mantissa, exponent = text.split("e")
+    return f"{float(text):.0f}" if 0 <= int(exponent) < _PLAIN else f"{mantissa}e{int(exponent)}"
 
 
 def with_indices(rows: list[tuple[str, ...]]) -> list[list[Markup]]:
@@ -141,7 +148,9 @@ def estimate_sentence(analysis: Analysis) -> str:
     """The interval of the estimates beside the computed amplitude."""
     found = analysis.results["wind"]
     low, high, computed = (readable.in_mm(value) for value in (*found["interval"], found["computed"]))
-    used = f"this analysis uses the harmonic lift of the case, which gives {computed} mm"
+    used = f"this analysis uses the harmonic lift of the case, which gives {computed} mm over its range"
+    if sum(row["ratio"] is not None and not math.isnan(row["ratio"]) for row in found["estimates"]) == 1:
+        return f"No published estimate can be given; {used}."
     return f"The estimates span {low} … {high} mm; {used}."
 
 
