@@ -144,13 +144,15 @@ def _resonance(case: Case, band: LockInBand) -> Criterion:
 
 def _statfjord(numbers: Similarity) -> Criterion:
     K = numbers.scruton_number
+    detail = _UNKNOWN if math.isnan(K) else f"K_s = {K:.3g}."
+    if K > 28:
+        detail = f"K_s = {K:.3g}: beyond what was seen there, which proves nothing for this pipe."
     return Criterion(
         name="Statfjord A 1978 (counter-example)",
         condition="K_s <= 28: large oscillations were seen at K_s = 28, beyond every limit above",
         expects_vibration=None if math.isnan(K) else K <= 28,
         speeds=None,
-        detail=_UNKNOWN if math.isnan(K) else f"K_s = {K:.3g}"
-        + (": beyond what was seen there, which proves nothing for this pipe." if K > 28 else "."),
+        detail=detail,
         standing="verified",
         source=_REVIEW,
     )

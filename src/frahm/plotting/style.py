@@ -92,7 +92,8 @@ def _make_narrow(figure: Figure) -> None:
     """Arrange a figure anew: text as large as before, an entry of the legend a line, long labels in several lines."""
     more = 0
     for legend in list(figure.legends):
-        handles, texts = legend.legend_handles, [text.get_text() for text in legend.get_texts()]
+        handles = [handle for handle in legend.legend_handles if handle is not None]
+        texts = [text.get_text() for text in legend.get_texts()]
         legend.remove()
         figure.legend(handles, texts, loc="outside lower center", ncols=1)
         more += len(texts) - 1

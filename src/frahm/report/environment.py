@@ -10,7 +10,7 @@ from markupsafe import Markup
 from frahm import readable
 from frahm.report.tables import number, with_indices
 
-_SIGNS = re.compile(r" (\u2026|\.\.\.|=) ")
+_SIGNS = re.compile(r" (\u2026|\.\.\.|(?<=\u03c3 )=) ")
 _UNITS = re.compile(r"(?<=\d) (?=(?:m/s|mm|m|MPa|Hz|rad/s|h|years|%|times)(?![A-Za-z0-9]))")
 
 
@@ -28,6 +28,6 @@ def template(name: str) -> jinja2.Template:
 
 
 def kept_together(text: str) -> str:
-    """The text with spaces that do not break inside ranges and equations, and between a number and its unit."""
+    """The text with spaces that do not break inside ranges, and between a number and its unit."""
     kept = _UNITS.sub("\u00a0", _SIGNS.sub("\u00a0\\1\u00a0", str(text)))
     return Markup(kept) if isinstance(text, Markup) else kept

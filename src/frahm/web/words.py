@@ -36,8 +36,6 @@ OVER_WIND = (
 )
 
 
-
-
 def no_slow_status(case: Case) -> str:
     """Why the slow flow is not drawn."""
     if not case.absorbers:
