@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.analysis.section import Section, Work
 from frahm.harmonic_balance import is_linear
 from frahm.response import DetachedCurveEvent, ResponseCurve, detached_curve_events
@@ -151,11 +152,11 @@ def margin_sentence(margin: dict[str, Any] | None) -> str:
     if margin["exists"]:
         origin = f"its birth was not found down to {lo:g} times the force"
         if born is not None:
-            less, where = 1 - born["force"], _sigma(born)
-            origin = f"it would take {less:.1%} less force to be below its birth, at detuning {where}"
+            less, where = 1 - born["force"], _place(born)
+            origin = f"it would take {less:.1%} less force to be below its birth, {where}"
         sentences.append(f"A detached response curve exists in the window; {origin}.")
     if ahead is not None:
-        sentences.append(f"{_increase(ahead['force'])} {_event(ahead)}, at detuning {_sigma(ahead)}.")
+        sentences.append(f"{_increase(ahead['force'])} {_event(ahead)}, {_place(ahead)}.")
     elif not margin["exists"]:
         sentences.append(f"No detached response curve was found up to {hi:g} times the force.")
     return " ".join(sentences)
@@ -170,7 +171,7 @@ def _increase(force: float) -> str:
     return f"With {force - 1:.1%} more force" if force < 2 else f"At {force:.3g} times the force"
 
 
-def _sigma(event: dict[str, Any]) -> str:
+def _place(event: dict[str, Any]) -> str:
     if math.isfinite(event.get("wind_speed", math.nan)):
-        return f"{event['detuning']:.3g} rad/s ({event['wind_speed']:.4g} m/s)"
-    return f"{event['detuning']:.3g} rad/s"
+        return f"at {readable.speed(event['wind_speed'])}"
+    return f"at detuning {event['detuning']:.3g} rad/s"

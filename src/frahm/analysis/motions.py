@@ -85,8 +85,8 @@ def motions(work: Work) -> Section:
 
 def _left_out(points: list[PointOfInterest]) -> Iterable[str]:
     if points:
-        where = ", ".join(f"{point.detuning:.4g}" for point in points)
-        yield f"There are more detunings of interest than were integrated at; left out: {where} rad/s."
+        where = ", ".join(point.place for point in points)
+        yield f"There are more places of interest than were integrated at; left out: {where}."
 
 
 def _motion(work: Work, point: PointOfInterest) -> Motion:
@@ -144,7 +144,7 @@ def _finished(found: list[Motion]) -> Check:
     name = "Every integration reached its end"
     bad = [m for m in found if not m.history.outcome.ok]
     if bad:
-        where = "; ".join(f"{m.point.detuning:.4g} rad/s: {m.history.outcome.value}" for m in bad)
+        where = "; ".join(f"{m.point.place}: {m.history.outcome.value}" for m in bad)
         return Check(name, FAIL, where)
     tolerance, steps = found[0].history.tolerance, sum(m.history.steps[0] for m in found)
     return Check(name, PASS, f"{len(found)} runs, {steps} steps, local error below {tolerance:g} of the motion.")
@@ -159,7 +159,7 @@ def _expected(work: Work, found: list[Motion]) -> Iterable[Check]:
     if not inside:
         return
     name = "Where no periodic response is stable, the motion is modulated"
-    text = ", ".join(f"{m.kind} at {m.point.detuning:.4g} rad/s" for m in inside)
+    text = ", ".join(f"{m.kind} {m.point.place}" for m in inside)
     kinds = {m.kind for m in inside}
     status = PASS if kinds == {"modulated"} else (FAIL if "periodic" in kinds else UNVERIFIED)
     yield Check(name, status, f"Integrated: {text}.")

@@ -74,7 +74,15 @@ def _candidates(work: Work) -> Iterator[PointOfInterest]:
     )
     for key, reason, ranges in named:
         for number, (lo, hi) in enumerate(ranges, start=1):
-            yield PointOfInterest(f"{key}-{number}", f"{reason} [{lo:.4g}, {hi:.4g}] rad/s", 0.5 * (lo + hi))
+            yield PointOfInterest(f"{key}-{number}", f"{reason}, {_span(work, lo, hi)}", 0.5 * (lo + hi))
+
+
+def _span(work: Work, lo: float, hi: float) -> str:
+    """A range of detunings [rad/s], by the wind where the lift follows it."""
+    if not work.range.over_wind:
+        return f"[{lo:.4g}, {hi:.4g}] rad/s"
+    speeds = work.range.speed(work.case.pipe.frequency + np.array([lo, hi]))
+    return f"[{speeds[0]:.4g}, {speeds[1]:.4g}] m/s"
 
 
 def _largest_stable(work: Work) -> float | None:

@@ -8,7 +8,8 @@ import jinja2
 from markupsafe import Markup
 
 from frahm import readable
-from frahm.report.tables import number, with_indices
+from frahm.report.numbers import number
+from frahm.report.tables import with_indices
 
 _SIGNS = re.compile(r" (\u2026|\.\.\.|(?<=\u03c3 )=) ")
 _UNITS = re.compile(r"(?<=\d) (?=(?:m/s|mm|m|MPa|Hz|rad/s|h|years|%|times)(?![A-Za-z0-9]))")

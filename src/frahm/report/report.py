@@ -17,7 +17,7 @@ from frahm.analysis import Analysis, margin_sentence
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.plotting.fatigue import fatigue_plot
-from frahm.plotting.gallery import save_figures, stands_over_wind
+from frahm.plotting.gallery import bare_beside, save_figures, stands_over_wind
 from frahm.plotting.interactive import CONFIG, basin_map_plot, manifold_plot, motion_plot, response_plot
 from frahm.plotting.over_wind import over_wind_plot
 from frahm.plotting.plain import PlainFigure
@@ -117,7 +117,7 @@ def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
     figures: dict[str, PlainFigure] = {}
     for name, quantity in (("response-pipe", "pipe_peak"), ("response-absorber", "relative_peak")):
         if "response" in data and quantity in data["response"]:
-            beside = data.get("without_absorber"), data.get("slow_flow"), data.get("modulated")
+            beside = bare_beside(results, data), data.get("slow_flow"), data.get("modulated")
             figures[name] = response_plot(data["response"], quantity, views, *beside)
     for view in views[:_MOST_MOTIONS]:
         figures[f"motion-{view.key}"] = motion_plot(view)

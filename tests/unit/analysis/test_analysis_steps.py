@@ -290,7 +290,7 @@ def test_report_shows_wind_and_gusts():
     kept = analysis_module._concluded(work, False)
     text = render_report(kept, {})
     for said in ("Brown &amp; Root 1985", "counter-example", "Griffin and Skop", "secondary", "Unsteady wind",
-                 "EN 1991-1-4, method 2", "load cycles at resonance", "2.36e+06",
+                 "EN 1991-1-4, method 2", "load cycles at resonance", "2.36e6",
                  "plot-unsteady-wind", "Synthetic turbulence"):  # fmt: skip
         assert said in text, said
     names = [name for name, _ in drawings(kept.results, kept.data)]
