@@ -2,6 +2,7 @@
 
 from frahm.design.absorber import DesignedAbsorber, parameters_text, with_design
 from frahm.design.designing import check_design, design_absorber, verified_designs
+from frahm.design.finalists import FAR
 from frahm.design.objective import Objective
 from frahm.design.pareto import pareto_front
 from frahm.design.settings import DesignSettings
@@ -9,6 +10,7 @@ from frahm.design.store import design_summary, save_design
 from frahm.design.study import DesignStudy, Rival
 
 __all__ = [
+    "FAR",
     "DesignSettings",
     "DesignStudy",
     "DesignedAbsorber",

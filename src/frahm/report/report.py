@@ -13,7 +13,7 @@ import numpy as np
 from markupsafe import Markup
 
 from frahm import readable
-from frahm.analysis import Analysis, margin_sentence
+from frahm.analysis import FORCE_MARGIN, Analysis, margin_sentence
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.plotting.fatigue import fatigue_plot
@@ -72,6 +72,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         cards=cards(analysis.results),
         results=analysis.results,
         margin=margin_of(analysis.results),
+        force_margin=FORCE_MARGIN,
         tables=tables,
         fatigue_tables=fatigue_tables,
         views=views[:_MOST_MOTIONS],
