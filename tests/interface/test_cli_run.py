@@ -122,7 +122,7 @@ def test_the_margin_is_in_summary_terminal_and_report(finished, summary):
     assert ahead["kind"] == "birth"
     (event,) = frahm.detached_curve_events(CASE, "force", (1.05, 1.15), detuning=(-0.2, 0.0), slices=2)
     assert ahead["force"] == pytest.approx(event.value, rel=1e-6)
-    text = f"The force margin is {ahead['force']:.4g}: beyond that factor on the force a detached response curve appears"
+    text = f"The force margin is {ahead['force']:.4g}: beyond that factor on the force a detached response curve"
     assert text in finished[1].stdout
     assert text in (finished[0] / "report.html").read_text(encoding="utf-8")
 

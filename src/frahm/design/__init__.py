@@ -7,10 +7,11 @@ from frahm.design.objective import Objective
 from frahm.design.pareto import pareto_front
 from frahm.design.settings import DesignSettings
 from frahm.design.store import design_summary, save_design
-from frahm.design.study import DesignStudy, Rival
+from frahm.design.study import SIMPLEST_FIRST, DesignStudy, Rival
 
 __all__ = [
     "FAR",
+    "SIMPLEST_FIRST",
     "DesignSettings",
     "DesignStudy",
     "DesignedAbsorber",

@@ -26,7 +26,7 @@ from frahm.design.problem import Problem
 from frahm.design.robustness import Sensitivity, ToleranceBand, sensitivities, tolerance_band
 from frahm.design.search import Limits, TierOne
 from frahm.design.settings import DesignSettings, settings_for
-from frahm.design.study import DesignStudy, MarginPoint, Rival, headline
+from frahm.design.study import DesignStudy, MarginPoint, Rival, first_of, headline
 from frahm.design.verdict import verdict
 from frahm.design.verification import Verification, climate_verification, verification
 from frahm.errors import ParameterError
@@ -485,7 +485,7 @@ class _Designing:
         if interrupted:
             doubts.append("Interrupted: the comparison is not complete.")
         name = f"{self.case.name}-{best.name.replace(' ', '-')}"[:60]
-        first = min(rivals, key=lambda rival: (not rival.verified, rival.value))
+        first = first_of(rivals)
         title = f"Designed for {self.case.name}. {headline(best, first, self.objective)}"[:200]
         return DesignStudy(
             case=self.case,

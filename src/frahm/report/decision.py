@@ -8,6 +8,7 @@ from typing import Any
 
 from frahm import readable
 from frahm.assessment import headline
+from frahm.design import SIMPLEST_FIRST
 from frahm.plotting.decision import DEVICES
 
 DEVICE_HEAD = [
@@ -93,10 +94,15 @@ def ranking_rows(errors: Mapping[str, Any]) -> list[tuple[str, str]]:
     rows = []
     for i, error in enumerate(errors["error"]):
         found = [(peaks[i], name, errors["verified"][name][i]) for name, peaks in errors["pipe_peak"].items()]
-        found.sort(key=lambda item: math.inf if item[0] is None else item[0])
+        found.sort(key=lambda item: (_shown(item[0]), SIMPLEST_FIRST.index(item[1])))
         words = (f"{DEVICES[name]} {readable.in_mm(peak)}{'' if sure else ' ?'}" for peak, name, sure in found)
         rows.append((f"{100 * error:+.3g} %" if abs(error) > 1e-9 else "0 %", ", ".join(words)))
     return rows
+
+
+def _shown(peak: float | None) -> float:
+    """A peak as precisely as it is printed: what reads the same ranks the same."""
+    return math.inf if peak is None else float(f"{peak:.3g}")
 
 
 def left_out_of_ranking(decision: Mapping[str, Any], errors: Mapping[str, Any]) -> str:

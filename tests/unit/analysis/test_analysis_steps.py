@@ -151,7 +151,7 @@ def test_a_detached_curve_appears_just_beyond_the_margin():
     assert has_detached(case, 1.005 * ahead["force"])
     assert -0.2 < ahead["detuning"] < 0
     assert margin["force_margin"] == ahead["force"]
-    said = f"The force margin is {ahead['force']:.4g}: beyond that factor on the force a detached response curve appears"
+    said = f"The force margin is {ahead['force']:.4g}: beyond that factor on the force a detached response curve"
     assert margin_sentence(margin).startswith(said)
 
 
