@@ -21,8 +21,13 @@ from searching import at_most
 
 TRANSIENT = 1e-3  # a motion called periodic may still hold so much of its start
 OTHERS = {"without_absorber", "wind", "unsteady_wind", "lock_in", "without_absorber_over_wind", "provenance", "fatigue"}
-NOT_PEAKS = {"pipe_peak_max_detuning", "stable_pipe_peak_max_detuning", "pipe_peak_max_without",
-             "pipe_peak_without_absorber", "pipe_peak_whole_run"}  # places, other devices, the start of a run
+NOT_PEAKS = {
+    "pipe_peak_max_detuning",
+    "stable_pipe_peak_max_detuning",
+    "pipe_peak_max_without",
+    "pipe_peak_without_absorber",
+    "pipe_peak_whole_run",
+}  # places, other devices, the start of a run
 
 
 @st.composite

@@ -39,7 +39,7 @@ def doubts_of(
         How near an end the worst counts as sitting at it, of its frequency.
     """
     W, attractor = worst
-    doubts = [*curve.unverified]
+    doubts = [*within.doubts, *curve.unverified]
     if any(survey.outcome is Outcome.INTERRUPTED for survey in surveys.values()):
         doubts.append(Outcome.INTERRUPTED.value)
     for at in sorted(surveys):

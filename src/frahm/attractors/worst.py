@@ -372,7 +372,9 @@ def _concluded(
     W_relative, stroke = _largest(surveys, _relative, min_basin)
     W_rms, loudest = _largest(surveys, _rms, min_basin)
     moved = worst.pipe_peak > 0  # where nothing excites the pipe no wind is worse than another
-    found = doubts_of(within, wide, curve, surveys, (W, worst), min_basin, beyond, _FINE) if moved else curve.unverified
+    found = doubts_of(within, wide, curve, surveys, (W, worst), min_basin, beyond, _FINE) if moved else [
+        *within.doubts, *curve.unverified,
+    ]  # fmt: skip
     possible = [a.pipe_peak for s in surveys.values() for a in s if a.basin_interval[1] >= min_basin]
     motion = WorstMotion(
         pipe_peak=worst.pipe_peak,
