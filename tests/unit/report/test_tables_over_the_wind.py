@@ -1,5 +1,6 @@
 """Where the lift follows the wind every table says the wind; displacements are in millimetres everywhere."""
 
+import dataclasses
 import re
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from frahm.analysis.response import exact_response
 from frahm.analysis.section import Work
 from frahm.analysis.wind import wind
 from frahm.cli.results import results_text
+from frahm.errors import Outcome
 from frahm.plotting.basins import basin_map_figure
 from frahm.plotting.interactive import basin_map_plot, manifold_plot
 from frahm.plotting.static import manifold_figure
@@ -102,3 +104,16 @@ def test_slow_manifold_and_basins_are_drawn_in_millimetres():
     assert axes.get_xlim()[1] > wide
     assert axes.get_xlabel().endswith("[mm]")
     assert axes.get_ylabel().endswith("[mm/s]")
+
+
+@pytest.mark.parametrize("outcome", ["step_too_small", "diverged", "step_limit"])
+def test_what_stopped_a_motion_is_printed_beside_it(analysis, outcome):
+    first, *rest = analysis.results["motions"]
+    stopped = first | {"kind": "unsettled", "outcome": outcome, "pipe_peak": None}
+    one = dict(analysis.results["attractors"][0], kind="unsettled", outcome=outcome)
+    shown = dataclasses.replace(analysis, results=analysis.results | {"motions": [stopped, *rest], "attractors": [one]})
+    words = Outcome[outcome.upper()].value
+    assert tables.motion_rows(shown)[0][2] == f"unsettled: {words}"
+    assert tables.attractor_rows(shown)[0][0] == f"unsettled: {words}"
+    assert results_text(shown).count(words) == 2
+    assert render_report(shown, {}).count(words) >= 2
