@@ -166,7 +166,7 @@ def decision_row(case: Case, device: str, found: dict[str, Any]) -> dict[str, st
     return {
         "peak": readable.length(worst["pipe_peak"]),
         "ratio": f"{worst['pipe_peak'] / case.pipe.diameter:.3g}",
-        "place": f"at {readable.speed(speed)}" if windy else f"at σ = {worst['detuning']:.3g} rad/s",
+        "place": f"at {readable.speed(speed)}" if windy else f"at σ = {round(worst['detuning'], 4) + 0.0:.3g} rad/s",
         "used": limits,
         "verdict": headline(judged),
         "sentence": judged["sentence"] + doubt + _about_band(case)
