@@ -59,9 +59,19 @@ def missing(path: Path) -> str:
     try:
         names = [entry.name for entry, _ in zip(os.scandir(path.parent), range(_MOST_NEIGHBOURS), strict=False)]
     except (OSError, ValueError):
-        return f"There is no folder {str(path.parent)!r}."
+        return f"There is no folder {str(path.parent)!r}." + _folder_beside(path.parent)
     near = nearest(path.name, [name for name in names if Path(name).suffix.lower() == path.suffix.lower()] or names)
     return "There is no such file." + (f" Did you mean {str(path.with_name(near))!r}?" if near else "")
+
+
+def _folder_beside(folder: Path) -> str:
+    """The folder beside one that is not there that was probably meant, as a question; empty if none is like it."""
+    try:
+        entries = [entry for entry, _ in zip(os.scandir(folder.parent), range(_MOST_NEIGHBOURS), strict=False)]
+        near = nearest(folder.name, [entry.name for entry in entries if entry.is_dir()])
+    except (OSError, ValueError):
+        return ""
+    return f" Did you mean {str(folder.with_name(near))!r}?" if near else ""
 
 
 def file_text(path: str | os.PathLike[str], allowed: str = "a file that exists", largest: int = _LARGEST_TEXT) -> str:

@@ -89,3 +89,21 @@ def test_a_group_of_any_other_kind_is_no_store(shown, tmp_path, attributes):
         shown(group, "zarr.json")
         with pytest.raises(frahm.ParameterError):
             summary_of(tmp_path)
+
+
+@pytest.mark.parametrize("command", ["show", "report"])
+def test_a_misspelt_folder_is_told_its_neighbour(tmp_path, command):
+    (tmp_path / "brace-b12").mkdir()
+    (tmp_path / "brace-b11.txt").write_text("no folder")
+    result = CliRunner().invoke(app, [command, str(tmp_path / "brace-b1")])
+    assert result.exit_code == 2
+    assert f"Did you mean '{tmp_path / 'brace-b12'}'?" in result.stderr
+    assert "Did you mean" not in CliRunner().invoke(app, [command, str(tmp_path / "zzz")]).stderr
+
+
+@pytest.mark.parametrize("name", ["bracee.yaml", "brace.yml", "brace"])
+def test_a_misspelt_case_is_told_its_neighbour(tmp_path, name):
+    frahm.load_case("jacket-pipe").to_yaml(tmp_path / "brace.yaml")
+    result = CliRunner().invoke(app, ["run", str(tmp_path / name)])
+    assert result.exit_code == 2
+    assert f"Did you mean '{tmp_path / 'brace.yaml'}'?" in result.stderr

@@ -7,6 +7,7 @@ import pty
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -115,11 +116,13 @@ def test_the_exact_response_is_near_the_slow_flow_and_holds_against_integration(
 
 
 def test_the_margin_is_in_summary_terminal_and_report(finished, summary):
-    ahead = summary["results"]["response"]["harmonic-balance"]["detached_curve_margin"]["next_event"]
+    margin = summary["results"]["response"]["harmonic-balance"]["detached_curve_margin"]
+    ahead = margin["next_event"]
+    assert margin["force_margin"] == ahead["force"]
     assert ahead["kind"] == "birth"
     (event,) = frahm.detached_curve_events(CASE, "force", (1.05, 1.15), detuning=(-0.2, 0.0), slices=2)
     assert ahead["force"] == pytest.approx(event.value, rel=1e-6)
-    text = f"With {ahead['force'] - 1:.1%} more force a detached response curve appears"
+    text = f"The force margin is {ahead['force']:.4g}: beyond that factor on the force a detached response curve"
     assert text in finished[1].stdout
     assert text in (finished[0] / "report.html").read_text(encoding="utf-8")
 
@@ -217,8 +220,10 @@ def test_the_report_stands_alone(finished, summary):
     assert "default-src 'none'" in own
     assert '"showSendToCloud": false' in text
     assert '"displaylogo": false' in text
-    assert summary["results"]["verdict"] in own
-    assert own.index(summary["results"]["verdict"]) < own.index("<h2>")
+    judged = summary["results"]["acceptance"]["sentence"]  # the banner
+    assert summary["results"]["verdict"].startswith(judged)
+    lead = summary["results"]["verdict"].removeprefix(judged).strip()
+    assert own.index(lead) < own.index("<h2>")
     for point in ("H1", "NS1", "SN1", "SN2", CASE.digest, "✓ pass", "@media print"):
         assert point in own
 
@@ -273,11 +278,40 @@ def test_a_folder_of_the_same_case_is_written_again_and_another_only_by_force(tm
 
 def test_what_is_unverified_is_named_and_ends_in_3(tmp_path):
     case = tmp_path / "short.yaml"
-    QUICK.with_analysis(periods=100).to_yaml(case)
+    QUICK.with_analysis(detuning=(0.05, 0.4)).to_yaml(case)
     result = CliRunner().invoke(app, ["run", str(case), "--out", str(tmp_path / "o")])
     assert result.exit_code == 3
-    assert "has not settled" in result.stderr
+    assert "sits at the lower end of the range" in result.stderr
     assert json.loads((tmp_path / "o" / "summary.json").read_text())["unverified"]
+
+
+@pytest.mark.parametrize("name", ["chimney", "table"])
+def test_a_case_without_limits_is_not_judged_and_nothing_failed(tmp_path, name):
+    case = Path(__file__).parents[1] / "cases" / f"{name}.yaml"
+    result = CliRunner().invoke(app, ["run", str(case), "--out", str(tmp_path / "o")])
+    assert result.exit_code == 0, result.stderr
+    assert result.stdout.startswith("NOT JUDGED: the case gives no limit")
+    found = json.loads((tmp_path / "o" / "summary.json").read_text())["results"]["acceptance"]
+    assert (found["verdict"], found["utilisation"]) == ("not verified", {})
+    assert "gives no limit" in found["sentence"]
+    html = (tmp_path / "o" / "report.html").read_text()
+    assert '<p class="word">NOT JUDGED</p>' in html
+    assert 'class="banner pass"' not in html
+
+
+@pytest.mark.parametrize(("displacement", "code"), [("20 mm", 4), ("2 m", 0)])
+def test_a_figure_of_a_transient_does_not_keep_the_answer_from_being_verified(tmp_path, displacement, code):
+    case = tmp_path / "short.yaml"
+    asked = QUICK.with_analysis(periods=100).to_dict() | {"limits": {"displacement": displacement}}
+    frahm.load_case(asked).to_yaml(case)
+    result = CliRunner().invoke(app, ["run", str(case), "--out", str(tmp_path / "o")])
+    assert result.exit_code == code
+    assert "has not settled" not in result.stderr
+    summary = json.loads((tmp_path / "o" / "summary.json").read_text())
+    assert summary["unverified"] == []
+    assert summary["results"]["acceptance"]["verdict"] == ("pass" if code == 0 else "fail")
+    assert {row["kind"] for row in summary["results"]["motions"]} == {"unsettled"}
+    assert any("has not settled within 100 periods" in note for note in summary["results"]["notes"])
 
 
 def test_progress_is_shown_on_a_terminal(tmp_path):

@@ -1,11 +1,12 @@
 """Room `analysis`: one case through every step that tells something about it, stored and read back."""
 
 from frahm.analysis.analysis import STEPS, Analysis, Progress, Step, analyse, defaulted_fields, provenance
-from frahm.analysis.margin import margin_sentence
+from frahm.analysis.margin import FORCE_MARGIN, margin_sentence
 from frahm.analysis.section import Check, Section, Work
 from frahm.analysis.store import load_analysis, read_summary, save_analysis
 
 __all__ = [
+    "FORCE_MARGIN",
     "STEPS",
     "Analysis",
     "Check",

@@ -17,6 +17,7 @@ from frahm.analysis.cross_check import cross_check
 from frahm.analysis.decision import decision
 from frahm.analysis.fatigue import fatigue
 from frahm.analysis.gusts import gusts
+from frahm.analysis.largest import largest_motion
 from frahm.analysis.linear import without_absorber
 from frahm.analysis.long_term import attractors, worst
 from frahm.analysis.manifold import manifold
@@ -28,7 +29,7 @@ from frahm.analysis.over_wind import over_wind
 from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import PERIODIC_BELOW
-from frahm.analysis.verdict import largest_motion, lock_in, verdict
+from frahm.analysis.verdict import lock_in, verdict
 from frahm.analysis.wind import wind
 from frahm.assessment import accepted
 from frahm.case import Case, field_values, load_case
@@ -120,7 +121,7 @@ class Analysis:
 
     @property
     def accepted(self) -> bool:
-        """Whether no limit of the case is exceeded; where nothing was judged nothing is."""
+        """Whether no limit of the case is exceeded; where nothing was judged, none is."""
         return bool(self.results.get("acceptance", {}).get("verdict") != "fail")
 
     def summary(self) -> dict[str, Any]:

@@ -49,11 +49,15 @@ def cross_check(work: Work) -> Section:
     if isinstance(work.theory, SlowFlow) and np.any(work.system.forcing):
         theory = _theory(work, work.theory, responses)
     table = _table(work.system, responses, batch, theory)
-    measured = (_measured(table),) if theory is not None else ()
+    if work.range.over_wind:
+        speeds = work.range.speed(table["frequency"].values)
+        table["wind_speed"] = labelled("comparison", speeds, "wind speed U", "m/s")
+    places = [work.range.place(response.frequency) for response in responses]
+    measured = (_measured(table, places),) if theory is not None else ()
     return Section(
         results={"cross_check": _found(table)},
         data={"cross_check": table},
-        checks=(_judged(table), *measured),
+        checks=(_judged(table, places), *measured),
     )
 
 
@@ -148,34 +152,32 @@ def _largest(table: xr.Dataset, prefix: str = "") -> dict[str, float]:
     return {f"largest_{which}_error": float(error) for which, error in zip(QUANTITIES, errors, strict=False)}
 
 
-def _judged(table: xr.Dataset) -> Check:
+def _judged(table: xr.Dataset, places: list[str]) -> Check:
     """Harmonic balance and integration solve the same equations: they must agree."""
     name = "Harmonic balance and integration agree on stable responses"
-    worst, sigma = _errors(table).max(axis=0), table["detuning"].values
+    worst = _errors(table).max(axis=0)
     known = np.isfinite(worst)
     apart = known & (worst > EXACT_BOUND)
     if np.any(apart):
-        where = "; ".join(f"{worst[i]:.1e} at {sigma[i]:.4g} rad/s" for i in np.flatnonzero(apart))
+        where = "; ".join(f"{worst[i]:.1e} at {places[i]}" for i in np.flatnonzero(apart))
         return Check(name, FAIL, f"Peaks differ by more than {EXACT_BOUND:g}: {where}.")
     if not np.all(known):
-        return Check(name, UNVERIFIED, f"{int(np.sum(~known))} of {sigma.size} integrations did not finish.")
-    detail = f"{sigma.size} responses, {_PERIODS} periods each, largest difference of a peak {worst.max():.1e}"
+        return Check(name, UNVERIFIED, f"{int(np.sum(~known))} of {len(places)} integrations did not finish.")
+    detail = f"{len(places)} responses, {_PERIODS} periods each, largest difference of a peak {worst.max():.1e}"
     return Check(name, PASS, f"{detail}; bound {EXACT_BOUND:g}.")
 
 
-def _measured(table: xr.Dataset) -> Check:
+def _measured(table: xr.Dataset, places: list[str]) -> Check:
     """How far the slow flow is off: theory beside the exact curve, its error is stated and nothing rests on it."""
     name = "The error of the slow flow against harmonic balance is known"
-    (pipe, stroke), sigma = _errors(table, "slow_"), table["detuning"].values
+    pipe, stroke = _errors(table, "slow_")
     worst = f"largest error {pipe.max():.2%} for the pipe, {stroke.max():.2%} for the stroke"
     bounds = f"{PIPE_BOUND:.0%} for the pipe, {RELATIVE_BOUND:.0%} for the stroke"
     beyond = np.flatnonzero(~((pipe <= PIPE_BOUND) & (stroke <= RELATIVE_BOUND)))
     if not beyond.size:
-        return Check(name, PASS, f"{sigma.size} responses, {worst}; within its bounds of {bounds}.")
+        return Check(name, PASS, f"{len(places)} responses, {worst}; within its bounds of {bounds}.")
     worst_first = beyond[np.argsort(-np.maximum(pipe, stroke)[beyond])]
-    where = "; ".join(
-        f"at {sigma[i]:.4g} rad/s pipe {pipe[i]:.1%}, stroke {stroke[i]:.1%}" for i in worst_first[:_LISTED]
-    )
+    where = "; ".join(f"at {places[i]} pipe {pipe[i]:.1%}, stroke {stroke[i]:.1%}" for i in worst_first[:_LISTED])
     where += f"; and {beyond.size - _LISTED} more" if beyond.size > _LISTED else ""
     limit = f"Beyond its bounds of {bounds} the slow flow is at its limit, and the exact curve stands in its place"
-    return Check(name, PASS, f"{sigma.size} responses, {worst}. {limit}: {where}.")
+    return Check(name, PASS, f"{len(places)} responses, {worst}. {limit}: {where}.")

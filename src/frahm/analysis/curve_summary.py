@@ -27,6 +27,7 @@ def _point(point: SpecialPoint) -> dict[str, Any]:
         "kind": point.kind,
         "detuning": point.detuning,
         "frequency": point.frequency,
+        "wind_speed": point.wind_speed,
         "pipe_peak": point.pipe_peak,
         "relative_peak": point.relative_peak,
         "branch": point.branch,
@@ -41,6 +42,7 @@ def _branch(branch: Branch) -> dict[str, Any]:
         "detached": bool(branch.detached),
         "asymmetric": bool(branch.asymmetric),
         "detuning": [float(branch.detuning.min()), float(branch.detuning.max())],
+        "wind_speed": None if branch.wind_speed is None else [branch.wind_speed.min(), branch.wind_speed.max()],
         "pipe_peak_max": float(branch.pipe_peak.max()),
         "stable_anywhere": bool(branch.stable.any()),
     }

@@ -13,7 +13,7 @@ from frahm.attractors import Attractor, WorstCase, WorstMotion, find_attractors,
 from frahm.case import Case
 from frahm.errors import ParameterError
 from frahm.harmonic_balance import is_linear
-from frahm.loads import vortex_shedding
+from frahm.loads import OperatingRange, vortex_shedding
 from frahm.systems import build_system
 
 _SETTLED = "Motions from sampled states settle on an attractor"
@@ -32,7 +32,7 @@ def attractors(work: Work) -> Section:
     open_share = sum(a.basin_fraction for a in found if a.kind == "unsettled")
     detail = f"At the design wind {100 * open_share:.3g} % of {found.samples} sampled initial states ended on none."
     return Section(
-        results={"attractors": [_row(attractor) for attractor in found]},
+        results={"attractors": [_row(attractor, work.range) for attractor in found]},
         data={"attractors": found.to_dataset()},
         checks=(Check(_SETTLED, PASS if open_share == 0 else UNVERIFIED, detail),),
         unverified=(*(() if open_share == 0 else (detail,)), *found.unverified),
@@ -66,7 +66,7 @@ def worst(work: Work) -> Section:
     several = (
         []
         if motion.tier == "exact linear response"
-        else [_row(attractor) for survey in first.surveys if len(survey) > 1 for attractor in survey]
+        else [_row(attractor, work.range) for survey in first.surveys if len(survey) > 1 for attractor in survey]
     )
     return Section(
         results={"range": _range_row(work), "worst_case": row, "other_modes": modes, "coexisting": several},
@@ -96,7 +96,7 @@ def _nonlinear(work: Work) -> bool:
     return not is_linear(work.system) and bool(np.any(work.system.forcing))
 
 
-def _row(attractor: Attractor) -> dict[str, Any]:
+def _row(attractor: Attractor, within: OperatingRange) -> dict[str, Any]:
     return {
         "kind": attractor.kind,
         "pipe_peak": attractor.pipe_peak,
@@ -108,4 +108,6 @@ def _row(attractor: Attractor) -> dict[str, Any]:
         "basin_interval": list(attractor.basin_interval),
         "from_rest": attractor.from_rest,
         "detuning": attractor.detuning,
+        "wind_speed": float(within.speed(attractor.frequency)),
+        "outcome": attractor.outcome.name.lower(),
     }

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.analysis.section import Section, Work
 from frahm.harmonic_balance import is_linear
 from frahm.response import DetachedCurveEvent, ResponseCurve, detached_curve_events
@@ -41,12 +42,13 @@ def detached_curve_margin(work: Work) -> Section:
     below, lowest = _searched(work, DOWNWARD, end) if exists else ([], 1.0)
     ahead = min(above, key=lambda event: event.value, default=None)
     born = max((e for e in below if e.direction > 0), key=lambda event: event.value, default=None)
-    found = {
+    found: dict[str, Any] = {
         "exists": exists,
         "next_event": None if ahead is None else _described(work, ahead),
         "born": None if born is None else _described(work, born),
         "searched": [lowest, highest],
     }
+    found["force_margin"] = _force_margin(found)
     late = time.monotonic() > end
     note = f"The search for births and merges of detached curves took long: it ended at {highest:g} times the force."
     return Section(
@@ -66,15 +68,16 @@ def _over_the_winds(work: Work, curve: dict[str, Any], exists: bool) -> Section:
             free = force
         while math.isfinite(taken) and taken - free > _BIRTH * taken:
             middle = 0.5 * (free + taken)
-            free, taken = (free, middle) if not _detached_count(work, middle) else (middle, taken)
+            free, taken = (free, middle) if _detached_count(work, middle) else (middle, taken)
         if math.isfinite(taken):
             events = [_born(work, taken)]
-    found = {
+    found: dict[str, Any] = {
         "exists": exists,
         "next_event": events[0] if events else None,
         "born": None,
         "searched": [1.0, taken if events else free],
     }
+    found["force_margin"] = math.nan if exists else free
     return Section(results={"response": {"harmonic-balance": curve | {"detached_curve_margin": found}}})
 
 
@@ -141,24 +144,33 @@ def _detached_count(work: Work, force: float) -> int:
     return sum(branch.detached and not branch.asymmetric for branch in _curve(work, force).branches)
 
 
+FORCE_MARGIN = "The force margin is the largest factor on the force up to which no detached response curve was met."
+
+
+def _force_margin(margin: dict[str, Any]) -> float:
+    """Largest factor on the force up to which no detached response curve was met [-]; NaN if one was everywhere."""
+    if margin["exists"]:
+        return math.nan if margin["born"] is None else float(margin["born"]["force"])
+    return float(margin["searched"][1] if margin["next_event"] is None else margin["next_event"]["force"])
+
+
 def margin_sentence(margin: dict[str, Any] | None) -> str:
     """What the margin means, for people; empty if it was not searched."""
     if margin is None:
         return ""
-    lo, hi = margin["searched"]
-    ahead, born = margin["next_event"], margin["born"]
-    sentences = []
-    if margin["exists"]:
-        origin = f"its birth was not found down to {lo:g} times the force"
-        if born is not None:
-            less, where = 1 - born["force"], _sigma(born)
-            origin = f"it would take {less:.1%} less force to be below its birth, at detuning {where}"
-        sentences.append(f"A detached response curve exists in the window; {origin}.")
-    if ahead is not None:
-        sentences.append(f"{_increase(ahead['force'])} {_event(ahead)}, at detuning {_sigma(ahead)}.")
-    elif not margin["exists"]:
-        sentences.append(f"No detached response curve was found up to {hi:g} times the force.")
-    return " ".join(sentences)
+    size, ahead, born = margin["force_margin"], margin["next_event"], margin["born"]
+    lo, _ = margin["searched"]
+    then = "" if ahead is None else f"{_event(ahead)}, {_place(ahead)}."
+    if not margin["exists"]:
+        if ahead is None:
+            return f"The force margin is at least {size:.4g}: up to that factor no detached response curve was met."
+        return f"The force margin is {size:.4g}: beyond that factor on the force {then}"
+    if born is None:
+        text = f"The force margin is below {lo:g}: a detached response curve exists down to that factor on the force."
+    else:
+        where = f"at that factor on the force the detached curve is born, {_place(born)}."
+        text = f"The force margin is {size:.4g}: {where}"
+    return text if ahead is None else f"{text} At the factor {ahead['force']:.4g} {then}"
 
 
 def _event(event: dict[str, Any]) -> str:
@@ -166,11 +178,7 @@ def _event(event: dict[str, Any]) -> str:
     return f"a detached response curve {words.get(event['change'], event['change'])}"
 
 
-def _increase(force: float) -> str:
-    return f"With {force - 1:.1%} more force" if force < 2 else f"At {force:.3g} times the force"
-
-
-def _sigma(event: dict[str, Any]) -> str:
+def _place(event: dict[str, Any]) -> str:
     if math.isfinite(event.get("wind_speed", math.nan)):
-        return f"{event['detuning']:.3g} rad/s ({event['wind_speed']:.4g} m/s)"
-    return f"{event['detuning']:.3g} rad/s"
+        return f"at {readable.speed(event['wind_speed'])}"
+    return f"at detuning {event['detuning']:.3g} rad/s"

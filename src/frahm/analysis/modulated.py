@@ -62,12 +62,13 @@ def basins(work: Work) -> Section:
     detuning = _several_at(work.done.results)
     if detuning is None:
         return Section()
+    W = work.system.reference_frequency + detuning
     try:
-        W = work.system.reference_frequency + detuning
         data = basin_map(work.driven(W), frequency=W, resolution=_RESOLUTION)
     except ParameterError as refused:
-        return Section(notes=(f"The basins at the detuning {detuning:.4g} rad/s were not mapped: {refused}",))
-    return Section(results={"basin_map": {"detuning": detuning}}, data={"basin_map": data})
+        return Section(notes=(f"The basins at {work.range.place(W)} were not mapped: {refused}",))
+    found = {"detuning": detuning, "wind_speed": float(work.range.speed(W))}
+    return Section(results={"basin_map": found}, data={"basin_map": data})
 
 
 def _several_at(results: dict[str, Any]) -> float | None:

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm.analysis.linear import bare_amplitude
-from frahm.analysis.points import PointOfInterest, points_of_interest
+from frahm.analysis.points import DESIGN_WIND, PointOfInterest, points_of_interest
 from frahm.analysis.ranges import growth_rates_at
 from frahm.analysis.section import FAIL, PASS, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import KINDS, envelope_of, judge
 from frahm.arrays import Floats, labelled
+from frahm.harmonic_balance import is_linear
 from frahm.systems import System
 from frahm.time_integration import TimeHistory, integrate, integrate_batch
 
@@ -65,17 +66,17 @@ def motions(work: Work) -> Section:
     found = [_motion(work, point) for point in points[:_MOST_POINTS]]
     unsettled = [motion for motion in found if motion.kind == "unsettled"]
     periods = work.case.analysis.periods
-    doubts = tuple(
-        f"The motion from rest at detuning {motion.point.detuning:.4g} rad/s has not settled within {periods} periods. "
-        + (motion.history.outcome.value if not motion.history.outcome.ok else "Raise analysis.periods.")
+    notes = tuple(
+        f"The motion from rest {motion.point.place} has not settled within {periods} periods:"
+        " its figure ends in a transient, which is no part of the answer."
         for motion in unsettled
     )
     return Section(
         results={"motions": [_summary(motion) for motion in found]},
         data={"motions": _motions_dataset(found), "spectra": _spectra_dataset(found)},
         checks=(_finished(found), *_expected(work, found)),
-        unverified=doubts,
         notes=(
+            *notes,
             "These motions were integrated from rest: another start can lead to another motion.",
             *_left_out(points[_MOST_POINTS:]),
         ),
@@ -84,16 +85,19 @@ def motions(work: Work) -> Section:
 
 def _left_out(points: list[PointOfInterest]) -> Iterable[str]:
     if points:
-        where = ", ".join(f"{point.detuning:.4g}" for point in points)
-        yield f"There are more detunings of interest than were integrated at; left out: {where} rad/s."
+        where = ", ".join(point.place for point in points)
+        yield f"There are more places of interest than were integrated at; left out: {where}."
 
 
 def _motion(work: Work, point: PointOfInterest) -> Motion:
-    system = work.driven(work.system.reference_frequency + point.detuning)
+    system = work.system if point.key == DESIGN_WIND else work.driven(work.system.reference_frequency + point.detuning)
     history, start = _followed(system, point.detuning, work.case.analysis.periods)
     tail = history.last(max(1, math.floor(_TAIL * history.periods)))
     kind, spread = judge(history)
-    bare = float(bare_amplitude(work.case, history.frequency, work.range)[0])
+    if kind == "modulated" and is_linear(system):  # what beats there is free motion that still dies out
+        kind = "unsettled"
+    within = None if point.key == DESIGN_WIND else work.range  # the range may leave the design wind out
+    bare = float(bare_amplitude(work.case, history.frequency, within)[0])
     return Motion(point, history, tail, start, kind, spread, bare)
 
 
@@ -140,7 +144,7 @@ def _finished(found: list[Motion]) -> Check:
     name = "Every integration reached its end"
     bad = [m for m in found if not m.history.outcome.ok]
     if bad:
-        where = "; ".join(f"{m.point.detuning:.4g} rad/s: {m.history.outcome.value}" for m in bad)
+        where = "; ".join(f"{m.point.place}: {m.history.outcome.value}" for m in bad)
         return Check(name, FAIL, where)
     tolerance, steps = found[0].history.tolerance, sum(m.history.steps[0] for m in found)
     return Check(name, PASS, f"{len(found)} runs, {steps} steps, local error below {tolerance:g} of the motion.")
@@ -155,7 +159,7 @@ def _expected(work: Work, found: list[Motion]) -> Iterable[Check]:
     if not inside:
         return
     name = "Where no periodic response is stable, the motion is modulated"
-    text = ", ".join(f"{m.kind} at {m.point.detuning:.4g} rad/s" for m in inside)
+    text = ", ".join(f"{m.kind} {m.point.place}" for m in inside)
     kinds = {m.kind for m in inside}
     status = PASS if kinds == {"modulated"} else (FAIL if "periodic" in kinds else UNVERIFIED)
     yield Check(name, status, f"Integrated: {text}.")

@@ -8,10 +8,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frahm import readable
 from frahm.analysis.ranges import detached_ranges, ranges_without_stable_response, unstable_ranges
 from frahm.analysis.section import Work
 from frahm.loads import vortex_shedding
 
+DESIGN_WIND = "design-wind"
 _SAME = 1e-4  # of the natural frequency: detunings closer than this are one point
 
 
@@ -24,6 +26,13 @@ class PointOfInterest:
     detuning: float
     wind_speed: float = math.nan
 
+    @property
+    def place(self) -> str:
+        """Where it is, for a sentence."""
+        if math.isfinite(self.wind_speed):
+            return f"at {readable.speed(self.wind_speed)}"
+        return f"at detuning {self.detuning:.4g} rad/s"
+
 
 def points_of_interest(work: Work) -> list[PointOfInterest]:
     """Detunings to integrate at, the design wind first; reasons that fall on one detuning are joined."""
@@ -35,14 +44,20 @@ def points_of_interest(work: Work) -> list[PointOfInterest]:
                 break
         else:
             points.append(new)
-    speeds = work.range.speed(work.case.pipe.frequency + np.array([point.detuning for point in points]))
-    return [replace(point, wind_speed=float(speed)) for point, speed in zip(points, speeds, strict=True)]
+    return [replace(point, wind_speed=_speed(work, point)) for point in points]
+
+
+def _speed(work: Work, point: PointOfInterest) -> float:
+    """Wind that sheds there [m/s]; the design wind is itself, though the range may leave it out."""
+    if work.range.over_wind and point.key == DESIGN_WIND:
+        return work.case.wind.speed
+    return float(work.range.speed(work.case.pipe.frequency + point.detuning))
 
 
 def _candidates(work: Work) -> Iterator[PointOfInterest]:
     case = work.case
     speed = f"{case.wind.speed:.4g} m/s"
-    yield PointOfInterest("design-wind", f"shedding frequency at {speed}", vortex_shedding(case).detuning)
+    yield PointOfInterest(DESIGN_WIND, f"shedding frequency at {speed}", vortex_shedding(case).detuning)
     lo, hi = work.range.detuning
     if not work.range.over_wind or lo <= 0 <= hi:
         yield PointOfInterest("resonance", "natural frequency of the pipe", 0.0)
@@ -59,7 +74,15 @@ def _candidates(work: Work) -> Iterator[PointOfInterest]:
     )
     for key, reason, ranges in named:
         for number, (lo, hi) in enumerate(ranges, start=1):
-            yield PointOfInterest(f"{key}-{number}", f"{reason} [{lo:.4g}, {hi:.4g}] rad/s", 0.5 * (lo + hi))
+            yield PointOfInterest(f"{key}-{number}", f"{reason}, {_span(work, lo, hi)}", 0.5 * (lo + hi))
+
+
+def _span(work: Work, lo: float, hi: float) -> str:
+    """A range of detunings [rad/s], by the wind where the lift follows it."""
+    if not work.range.over_wind:
+        return f"[{lo:.4g}, {hi:.4g}] rad/s"
+    speeds = work.range.speed(work.case.pipe.frequency + np.array([lo, hi]))
+    return f"[{speeds[0]:.4g}, {speeds[1]:.4g}] m/s"
 
 
 def _largest_stable(work: Work) -> float | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from frahm import readable
 from frahm.analysis.curve_summary import summary_of
 from frahm.analysis.linear import linear_response
 from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
@@ -62,8 +63,12 @@ def _exactly_located(curve: ResponseCurve) -> Check:
 
 
 def _places(points: list[SpecialPoint]) -> str:
-    shown = ", ".join(f"{p.kind} at {p.detuning:.5g} rad/s" for p in points[:_LISTED])
+    shown = ", ".join(f"{p.kind} {_place(p)}" for p in points[:_LISTED])
     return shown + (f" and {len(points) - _LISTED} more" if len(points) > _LISTED else "")
+
+
+def _place(point: SpecialPoint) -> str:
+    return f"at {point.detuning:.5g} rad/s" if point.wind_speed is None else f"at {readable.speed(point.wind_speed)}"
 
 
 def _separated(curve: ResponseCurve) -> Check:

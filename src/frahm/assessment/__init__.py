@@ -1,6 +1,6 @@
 """Room `assessment`: stress histories, cycles and fatigue damage over the attractors and the wind climate."""
 
-from frahm.assessment.acceptance import Utilisation, accepted, utilisations
+from frahm.assessment.acceptance import Utilisation, accepted, headline, utilisations
 from frahm.assessment.all_modes import damage_of_modes, doubts_of_modes, total_damage
 from frahm.assessment.closed_forms import constant_range_damage, weibull_damage
 from frahm.assessment.damage import FatigueDamage
@@ -21,6 +21,7 @@ __all__ = [
     "device_row",
     "doubts_of_modes",
     "fatigue_damage",
+    "headline",
     "rainflow_cycles",
     "stress_places",
     "total_damage",

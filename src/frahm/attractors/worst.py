@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from frahm.attractors.attractor import Attractor, AttractorSet
+from frahm.attractors.doubts import Place, doubts_of, frequencies_beyond
 from frahm.attractors.finding import MOST_SAMPLES, attractors_from, settling_periods
 from frahm.attractors.periodic_motion import linear_motions, stable_motions
 from frahm.attractors.regions import Region, checked_region, region_for
@@ -33,8 +34,8 @@ BESIDE = 5e-4  # how far beside a special point, of the frequency: nearer to it 
 _CLOSE = 8e-5  # frequencies nearer than this are one
 _FINE = 3.3e-4  # how near its neighbours the worst is looked at in the end
 _ROUNDS = 12
-_LARGER = 1.01  # what is larger by less is as large
 
+UNMOVED_TIER = "nothing excites the pipe: the lift is zero"
 PERIODIC_TIER = "all stable periodic responses, and a search where there is none"
 
 Size = Callable[[Attractor], float]
@@ -146,8 +147,8 @@ def worst_case(
 
     The frequencies looked at are spread over the range, stand beside the special points of the exact response curve
     and at its stable maxima; around the worst they are then halved until its frequency is known to 0.03 %. The worst
-    is unverified if it sits at an end of the range, if the range widened by half has a motion larger by more than 1 %,
-    or if a stable response with a smaller basin is larger by more than 1 %.
+    is unverified if it sits at an end of the range while something excites the pipe, if the range widened by half has a
+    motion larger by more than 1 %, or if a stable response with a smaller basin is larger by more than 1 %.
 
     Parameters
     ----------
@@ -239,7 +240,7 @@ def worst_over(
     sizes = (_pipe, _relative, _rms) if rms else (_pipe, _relative)
     lo, hi = within.frequency
     if is_linear(system) or not np.any(system.forcing):
-        return _concluded(system, within, wide, curve, linear_motions(system, curve, within), min_basin, ())
+        return _concluded(system, within, wide, curve, linear_motions(system, curve, within), min_basin, (), ())
     box = region or _region_of(system, curve, lo, hi)
 
     def survey(W: float) -> AttractorSet:
@@ -254,12 +255,13 @@ def worst_over(
         surveys[W] = survey(W)
 
     doubts: list[str] = []
+    beyond: list[Place] = []
     try:
         for W in _first_frequencies(curve, lo, hi, beside):
             look(W)
         _refine(surveys, look, min_basin, sizes)
-        beyond = {W: survey(W) for W in _outside(curve, lo, hi)}
-        doubts += _larger_beyond(beyond, _largest(surveys, _pipe, min_basin)[1].pipe_peak, min_basin, wide)
+        for W in frequencies_beyond(curve, lo, hi):
+            beyond.append((W, _largest({W: survey(W)}, _pipe, min_basin)[1].pipe_peak))
     except KeyboardInterrupt:
         if not surveys:
             raise
@@ -267,7 +269,7 @@ def worst_over(
     if any(_gaps(surveys, W) for W in {_largest(surveys, size, min_basin)[0] for size in sizes}):
         doubts.append("The frequency of the worst was not bracketed to 0.03 %.")
     tier = "attractor search" if sampled else PERIODIC_TIER
-    return _concluded(system, within, wide, curve, surveys, min_basin, tuple(doubts), tier)
+    return _concluded(system, within, wide, curve, surveys, min_basin, tuple(doubts), beyond, tier)
 
 
 def driven_at(system: System, within: OperatingRange) -> Callable[[float], System]:
@@ -360,79 +362,18 @@ def _largest(surveys: dict[float, AttractorSet], size: Size, min_basin: float) -
     return max(counting, key=lambda item: size(item[1]))
 
 
-def _outside(curve: ResponseCurve, lo: float, hi: float) -> list[float]:
-    """Frequencies beyond a range at which a larger motion is most likely: largest responses, stable and unstable."""
-    found = []
-    for side in (curve.frequency < lo, curve.frequency > hi):
-        for state in (curve.stable, ~curve.stable):
-            here = np.flatnonzero(side & state & np.isfinite(curve.pipe_peak))
-            if here.size:
-                found.append(float(curve.frequency[here[np.argmax(curve.pipe_peak[here])]]))
-    return sorted(set(found))
-
-
-def _larger_beyond(
-    beyond: dict[float, AttractorSet], worst: float, min_basin: float, wide: OperatingRange
-) -> list[str]:
-    """What the range widened by half has that is larger than the worst inside."""
-    if not beyond:
-        return []
-    W, attractor = _largest(beyond, _pipe, min_basin)
-    return _beyond(attractor.pipe_peak, W, worst, wide)
-
-
-def _beyond(peak: float, W: float, worst: float, wide: OperatingRange) -> list[str]:
-    if not peak > _LARGER * worst:
-        return []
-    return [f"Beyond the range, at {wide.place(W)}, a motion of {peak:.4g} m is larger than the worst inside."]
-
-
-def _doubts(
-    within: OperatingRange, wide: OperatingRange, curve: ResponseCurve, surveys: dict[float, AttractorSet],
-    worst: tuple[float, Attractor], min_basin: float,
-) -> list[str]:  # fmt: skip
-    """What speaks against the worst."""
-    lo, hi = within.frequency
-    W, attractor = worst
-    doubts = [*curve.unverified]
-    if any(survey.outcome is Outcome.INTERRUPTED for survey in surveys.values()):
-        doubts.append(Outcome.INTERRUPTED.value)
-    for at in sorted(surveys):
-        for other in surveys[at]:
-            if other.kind == "unsettled" and other.basin_fraction >= min_basin:
-                share = f"{100 * other.basin_fraction:.2g} % of the motions at Omega = {at:.6g} rad/s"
-                doubts.append(f"{share} are unsettled: {other.outcome.value}")
-    for end, edge in enumerate((lo, hi)):
-        if abs(W - edge) <= _FINE * W and not within.closed(end):
-            where = "lower" if end == 0 else "upper"
-            doubts.append(
-                f"The worst motion sits at the {where} end of the range, {within.place(edge)}: beyond it may be larger."
-            )
-    stable = curve.stable_or_limit & np.isfinite(curve.pipe_peak)
-    inside = (curve.frequency >= lo) & (curve.frequency <= hi)
-    for part, beyond in ((stable & inside, False), (stable & ~inside, True)):
-        if not np.any(part):
-            continue
-        at_most = int(np.argmax(np.where(part, curve.pipe_peak, -1.0)))
-        peak, where_ = float(curve.pipe_peak[at_most]), float(curve.frequency[at_most])
-        if beyond:
-            doubts += _beyond(peak, where_, attractor.pipe_peak, wide)
-        elif peak > _LARGER * attractor.pipe_peak:
-            doubts.append(
-                f"A stable response of {peak:.4g} m at {wide.place(where_)} is larger; "
-                f"less than {100 * min_basin:.3g} % of the sampled states end on it."
-            )
-    return list(dict.fromkeys(doubts))
-
-
 def _concluded(
     system: System, within: OperatingRange, wide: OperatingRange, curve: ResponseCurve,
-    surveys: dict[float, AttractorSet], min_basin: float, doubts: tuple[str, ...], tier: str = "exact linear response",
+    surveys: dict[float, AttractorSet], min_basin: float, doubts: tuple[str, ...], beyond: Sequence[Place],
+    tier: str = "exact linear response",
 ) -> WorstCase:  # fmt: skip
     W, worst = _largest(surveys, _pipe, min_basin)
     W_relative, stroke = _largest(surveys, _relative, min_basin)
     W_rms, loudest = _largest(surveys, _rms, min_basin)
-    found = _doubts(within, wide, curve, surveys, (W, worst), min_basin)
+    moved = worst.pipe_peak > 0  # where nothing excites the pipe no wind is worse than another
+    found = doubts_of(within, wide, curve, surveys, (W, worst), min_basin, beyond, _FINE) if moved else [
+        *within.doubts, *curve.unverified,
+    ]  # fmt: skip
     possible = [a.pipe_peak for s in surveys.values() for a in s if a.basin_interval[1] >= min_basin]
     motion = WorstMotion(
         pipe_peak=worst.pipe_peak,
@@ -448,7 +389,7 @@ def _concluded(
         rms_frequency=W_rms,
         state=worst.representative_state,
         range=within.text,
-        tier=tier,
+        tier=tier if moved else UNMOVED_TIER,
         samples=surveys[W].samples,
         searched=len(surveys),
         unverified=tuple(dict.fromkeys([*doubts, *found])),

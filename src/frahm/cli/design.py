@@ -107,8 +107,7 @@ def _conclude(study: DesignStudy, folder: Path) -> None:
             f" {'verified' if best.verified else 'UNVERIFIED'}."
         )
     typer.echo(study.headline)
-    if study.acceptance.get("rows"):
-        typer.echo(study.acceptance["sentence"])
+    typer.echo(study.acceptance["sentence"])
     typer.echo(study.verdict)
     typer.echo(f"Report: {folder / 'report.html'} (numbers: summary.json, the design as a case: best.yaml)")
     for doubt in study.unverified:

@@ -7,9 +7,6 @@ from collections.abc import Iterator, Sequence
 from frahm.analysis import Analysis
 from frahm.report import tables
 
-_POINTS_HEAD = ("", "kind", "sigma rad/s", "Hz", "pipe m", "stroke m", "branch", "status")
-_MOTIONS_HEAD = ("sigma rad/s", "kind", "pipe peak m", "rms m", "stroke m", "without absorber m", "why here")
-
 
 def results_text(analysis: Analysis) -> str:
     """Verdict, special points, motions, checks and doubts."""
@@ -24,11 +21,15 @@ def _lines(analysis: Analysis) -> Iterator[str]:
     points = tables.special_point_rows(analysis)
     if points:
         yield "\nSpecial points"
-        yield from _columns(_POINTS_HEAD, points)
-    motions = [(r[0], r[2], r[3], r[5], r[6], r[7], r[1]) for r in tables.motion_rows(analysis)]
+        yield from _columns(tables.special_point_head(analysis), points)
+    motions = tables.motion_rows(analysis)
     if motions:
         yield "\nMotions from rest"
-        yield from _columns(_MOTIONS_HEAD, motions)
+        yield from _columns(tables.motion_head(analysis), motions)
+    attractors = tables.attractor_rows(analysis)
+    if attractors:
+        yield "\nAttractors at the design wind"
+        yield from _columns(tables.ATTRACTOR_HEAD, attractors)
     yield "\nChecks"
     for name, _, sign, detail in tables.check_rows(analysis):
         yield f"  {sign:<13} {name}. {detail}"

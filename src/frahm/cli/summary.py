@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from frahm.case import Case, field_values
-from frahm.loads import vortex_shedding
+from frahm.loads import resonant_shedding, vortex_shedding
 from frahm.plausibility import plausibility
 
 _LISTED = 12  # pairs of a table that are still written out
@@ -83,8 +83,10 @@ def _consequences(case: Case) -> list[str]:
     ]
     damping = 2 * pipe.damping_ratio * pipe.mass * pipe.frequency
     if damping:
-        lift = shedding.lift * pipe.modal.lift_lengths[0] / pipe.length
-        lines.append(f"  resonant amplitude without absorbers {_number(lift / (damping * pipe.frequency), 4)} m")
+        resonant = resonant_shedding(case)
+        lift = resonant.lift * pipe.modal.lift_lengths[0] / pipe.length
+        amplitude = _number(lift / (damping * pipe.frequency), 4)
+        lines.append(f"  resonant amplitude without absorbers {amplitude} m, by the lift of {resonant.speed:.4g} m/s")
     for absorber in case.absorbers:
         values = absorber.normalised(pipe.mass)
         named = ", ".join(f"{key} {_number(values[key])}" for key in ("rho2", "kappa", "xi2") if key in values)

@@ -2,13 +2,16 @@
 
 from frahm.design.absorber import DesignedAbsorber, parameters_text, with_design
 from frahm.design.designing import check_design, design_absorber, verified_designs
+from frahm.design.finalists import FAR
 from frahm.design.objective import Objective
 from frahm.design.pareto import pareto_front
 from frahm.design.settings import DesignSettings
 from frahm.design.store import design_summary, save_design
-from frahm.design.study import DesignStudy, Rival
+from frahm.design.study import SIMPLEST_FIRST, DesignStudy, Rival
 
 __all__ = [
+    "FAR",
+    "SIMPLEST_FIRST",
     "DesignSettings",
     "DesignStudy",
     "DesignedAbsorber",

@@ -19,14 +19,14 @@ from frahm.design.absorber import DesignedAbsorber, absorber_of, parameters_text
 from frahm.design.completing import fatigue_row, other_motions_at, worst_motion
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import exact_birth
-from frahm.design.finalists import Finalist, finalists
+from frahm.design.finalists import FAR, Finalist, finalists
 from frahm.design.hardware import Hardware, as_built, hardware
 from frahm.design.objective import Objective
 from frahm.design.problem import Problem
 from frahm.design.robustness import Sensitivity, ToleranceBand, sensitivities, tolerance_band
 from frahm.design.search import Limits, TierOne
 from frahm.design.settings import DesignSettings, settings_for
-from frahm.design.study import DesignStudy, MarginPoint, Rival, headline
+from frahm.design.study import DesignStudy, MarginPoint, Rival, first_of, headline
 from frahm.design.verdict import verdict
 from frahm.design.verification import Verification, climate_verification, verification
 from frahm.errors import ParameterError
@@ -336,7 +336,7 @@ class _Designing:
         self.found.rivals["none"] = _rival("none", None, checked, math.inf)
         if self.case.absorbers:
             self._step("the case's own absorber")
-            problem, most = self.problem, 1.1 * self.settings.force_margin
+            problem, most = self.problem, FAR * self.settings.force_margin
             checked = self._verify(self.case)
             self.nominal["case"] = checked.nominal
             free, _ = exact_birth(build_system(self.case), problem.windows, problem.disturbances, 1.0, most)
@@ -387,7 +387,7 @@ class _Designing:
             self.case.pipe.mass,
         )  # fmt: skip
         if design.kappa and not design.quintic:
-            built, most = build_system(as_built(self.case, design, stroke, room)), 1.1 * settings.force_margin
+            built, most = build_system(as_built(self.case, design, stroke, room)), FAR * settings.force_margin
             found.built = self._worst(built)
             found.built_margin, _ = exact_birth(built, problem.windows, problem.disturbances, best.force_margin, most)
 
@@ -485,7 +485,7 @@ class _Designing:
         if interrupted:
             doubts.append("Interrupted: the comparison is not complete.")
         name = f"{self.case.name}-{best.name.replace(' ', '-')}"[:60]
-        first = min(rivals, key=lambda rival: (not rival.verified, rival.value))
+        first = first_of(rivals)
         title = f"Designed for {self.case.name}. {headline(best, first, self.objective)}"[:200]
         return DesignStudy(
             case=self.case,

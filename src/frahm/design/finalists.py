@@ -28,7 +28,7 @@ _LEAST_DECAY = 4.5e-3  # per period: slower motions do not settle within the per
 _MISSED = 2e-3  # of the force: a detached curve so near its birth may be too small to be met
 _TRUSTED = (0.95, 1.1)  # ratios of exact to screened peaks beyond these tell of a jump, not of a trend
 _HOPELESS, _JUMPED = 4.0, 1.3  # ratios from where on the neighbourhood of a design is left, the second if wary
-_FAR = 1.1  # of the margin: how far a birth is looked for
+FAR = 1.1  # of the margin asked for: how far a birth is looked for
 
 
 @dataclass(frozen=True)
@@ -121,7 +121,7 @@ def _judged(
     free, taken = math.inf, math.inf
     if design.nonlinear:
         guess = judged[0, BIRTH] * corrections.birth
-        most = _FAR * limits.force_margin
+        most = FAR * limits.force_margin
         order = np.argsort(tier.screening.births_by_disturbance(row), kind="stable")
         critical_first = [disturbances[i] for i in order]
         free, taken = exact_birth(system, windows, critical_first, guess if math.isfinite(guess) else most, most)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from frahm.case import Case
 
+SIMPLEST_FIRST = ("none", "case", "tuned mass damper", "sink", "mixed")
 _ALIKE = 0.995  # values that differ by less are one
 NAMES = ("none", "case", "sink", "tuned mass damper", "mixed")
 
@@ -206,7 +208,7 @@ class DesignStudy:
     @property
     def best_of_all(self) -> Rival:
         """The device with the least value of the objective, verified ones first, whatever family was asked for."""
-        return min(self.comparison, key=lambda rival: (not rival.verified, rival.value))
+        return first_of(self.comparison)
 
     @property
     def headline(self) -> str:
@@ -216,7 +218,7 @@ class DesignStudy:
     def ranking(self, error: float) -> list[str]:
         """Devices by the worst pipe peak where the pipe's frequency is this much of the nominal one, best first."""
         at = self.errors.index(error)
-        return sorted(self.error_table, key=lambda name: self.error_table[name][at])
+        return sorted(self.error_table, key=lambda name: (self.error_table[name][at], SIMPLEST_FIRST.index(name)))
 
     def frequency_errors(self) -> dict[str, Any]:
         """Worst pipe peaks [m] of the devices at every error of the pipe's frequency [-], and whether each holds."""
@@ -288,12 +290,28 @@ class DesignStudy:
         return xr.Dataset(variables, attrs={"frahm": self.version, "case": self.case.name, "verdict": self.verdict})
 
 
+def first_of(rivals: Sequence[Rival]) -> Rival:
+    """Best verified device; of those as good, the simplest."""
+    best = min(rivals, key=lambda rival: (not rival.verified, rival.value))
+    alike = [one for one in rivals if one.verified == best.verified and _ALIKE * one.value <= best.value]
+    return min(alike, key=lambda rival: SIMPLEST_FIRST.index(rival.name))
+
+
 def headline(best: Rival, first: Rival, objective: Objective) -> str:
     """What was chosen, and whether another device does better."""
-    text = f"Best {best.name}: {objective.title} {objective.shown(best.value)}"
+    text = f"Best {best.name}{_corner(best)}: {objective.title} {objective.shown(best.value)}"
     if first.name in (best.name, "none") or not first.value < _ALIKE * best.value:
         return f"{text}; no device compared does better."
     return f"{text}; the {first.name} does better, {objective.shown(first.value)}, and is not what was asked for."
+
+
+def _corner(best: Rival) -> str:
+    """What a mixture is that needs only one of its springs."""
+    if best.name != "mixed" or best.design is None:
+        return ""
+    if not best.design.nonlinear:
+        return ", which is a tuned mass damper without a cubic spring"
+    return "" if best.design.linear else ", which is a sink without a linear spring"
 
 
 def hardware_rows(sheet: Hardware | None) -> list[dict[str, Any]]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from frahm.case import Scatter
 from frahm.design.objective import Objective
-from frahm.design.study import Rival
+from frahm.design.study import Rival, first_of
 
 _ALIKE = 0.005  # values that differ less are equal
 WORDS = {"case": "the case's own absorber", "sink": "the optimum sink", "none": "no absorber", "mixed": "the mixture"}
@@ -42,11 +42,8 @@ def _given(scatter: Scatter) -> str:
 
 
 def _best(by_name: dict[str, Rival], scatter: Scatter, objective: Objective) -> str:
-    order = sorted(by_name.values(), key=lambda rival: (not rival.verified, rival.value))
-    first, none = order[0], by_name.get("none")
+    first, none = first_of(list(by_name.values())), by_name.get("none")
     tuned, mixed = by_name.get("tuned mass damper"), by_name.get("mixed")
-    if tuned and first is mixed and tuned.verified and tuned.value <= (1 + _ALIKE) * mixed.value:
-        first = tuned
     text = f"{_given(scatter)}, {word(first.name)} has the smallest {objective.title}, {objective.shown(first.value)}"
     if none and none is not first and none.value > 0:
         text += f", {100 * first.value / none.value:.2g} % of that without absorber"

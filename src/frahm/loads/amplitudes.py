@@ -12,8 +12,8 @@ from frahm.loads.correlation import correlation_length
 from frahm.loads.eurocode import METHOD_1, METHOD_2, eurocode_amplitude, spectral_amplitude
 from frahm.loads.mode_factors import ModeFactors, mode_factors
 from frahm.loads.reynolds import published_curve, strouhal_curve
-from frahm.loads.similarity import lock_in_band, scruton_number, skop_griffin_number
-from frahm.loads.vortex import reynolds_number, vortex_shedding
+from frahm.loads.similarity import lock_in_band, resonant_shedding, scruton_number, skop_griffin_number
+from frahm.loads.vortex import reynolds_number
 from frahm.loads.wake_oscillator import WakeOscillator
 
 _NAMES = (
@@ -146,10 +146,11 @@ def _unknown(name: str) -> AmplitudeEstimate:
 
 
 def _forced(case: Case) -> AmplitudeEstimate:
-    shedding, pipe = vortex_shedding(case), case.pipe
+    shedding, pipe = resonant_shedding(case), case.pipe
     length = float(pipe.modal.lift_lengths[0])
     amplitude = forced_amplitude(shedding.lift / pipe.length * length, pipe.mass, pipe.damping_ratio, pipe.frequency)
-    detail = f"C_L = {shedding.lift_coefficient:.4g} at {shedding.speed:g} m/s, generalised lift length {length:.4g} m."
+    lift = f"C_L = {shedding.lift_coefficient:.4g} at {shedding.speed:.4g} m/s"
+    detail = f"{lift}, generalised lift length {length:.4g} m."
     source = "closed form of the forced oscillator"
     return AmplitudeEstimate("Harmonic lift of the case, in resonance", amplitude / pipe.diameter, detail,
                              "verified", source)  # fmt: skip

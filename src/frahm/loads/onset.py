@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from frahm.case import Case, Tube
 from frahm.loads.similarity import LockInBand, Similarity, lock_in_band, similarity
 
+_UNKNOWN = "K_s is not known: the case does not say the mass per length of the pipe."
 _REVIEW = "read in A. Kvitrud's review of vortex-induced vibrations offshore"
 
 
@@ -83,7 +84,7 @@ def _limits(
     window = f"V_R > {low:g}" if math.isinf(high) else f"{low:g} <= V_R <= {high:g}"
     reach = f"{low * scale:.3g} m/s and more" if math.isinf(high) else f"{low * scale:.3g} ... {high * scale:.3g} m/s"
     if math.isnan(K):
-        detail = f"V_R = {V:.3g}; K_s is not known: the case does not say the mass per length of the pipe."
+        detail = f"V_R = {V:.3g}; {_UNKNOWN}"
         return Criterion(name, f"{window} and K_s < {scruton:g}", None, None, detail, "verified", _REVIEW)
     where = f"the reduced velocities are those of {reach}" if scruton > K else "at no speed is K_s low enough"
     return Criterion(
@@ -143,13 +144,15 @@ def _resonance(case: Case, band: LockInBand) -> Criterion:
 
 def _statfjord(numbers: Similarity) -> Criterion:
     K = numbers.scruton_number
+    detail = _UNKNOWN if math.isnan(K) else f"K_s = {K:.3g}."
+    if K > 28:
+        detail = f"K_s = {K:.3g}: beyond what was seen there, which proves nothing for this pipe."
     return Criterion(
         name="Statfjord A 1978 (counter-example)",
         condition="K_s <= 28: large oscillations were seen at K_s = 28, beyond every limit above",
         expects_vibration=None if math.isnan(K) else K <= 28,
         speeds=None,
-        detail=f"K_s = {K:.3g}"
-        + (": beyond what was seen there, which proves nothing for this pipe." if K > 28 else "."),
+        detail=detail,
         standing="verified",
         source=_REVIEW,
     )

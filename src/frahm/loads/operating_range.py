@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -53,6 +54,8 @@ class OperatingRange:
         Sentences that say where the ends come from.
     moves : bool
         Whether the range was made from the natural frequencies, so that it moves with them.
+    doubts : tuple of str
+        Sentences that say why nothing found over the range is verified; empty if it is what the site asks for.
     """
 
     frequency: tuple[float, float]
@@ -63,6 +66,7 @@ class OperatingRange:
     site: tuple[float, float] = (0.0, math.inf)
     basis: tuple[str, ...] = ()
     moves: bool = False
+    doubts: tuple[str, ...] = ()
 
     @property
     def over_wind(self) -> bool:
@@ -121,7 +125,8 @@ class OperatingRange:
         hi = min((float(U) for U in self.law.speeds_of(ends[1]) if self.wind[1] <= U), default=most)
         lo, hi = min(self.wind[0], max(lo, least)), max(self.wind[1], min(hi, most))
         lo, hi, _ = _ascending(self.law, lo, hi, self.wind[0])
-        return _over(self.law, self.lift, (lo, hi), self.reference, self.site, self.basis, self.moves)
+        found = _over(self.law, self.lift, (lo, hi), self.reference, self.site, self.basis, self.moves)
+        return replace(found, doubts=self.doubts)
 
     def widened(self, share: float = HALF) -> OperatingRange:
         """The range with its width grown by a share, as far as the site and the tables of the case reach."""
@@ -269,6 +274,9 @@ def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
             " beyond."
         )
     wanted = ends if ends and elsewhere else [speed, *ends]
+    doubts = _beyond_the_site(speed, ends, site)
+    if doubts:  # none of these winds is one of the site: they are looked at as if they were
+        site = (min(*wanted, site[0]), max(*wanted, site[1]))
     lo = max(min(wanted), min(site[0], speed), reached[0])
     hi = min(max(wanted), max(site[1], speed), reached[1])
     if not lo < hi * (1 - _SAME):
@@ -278,7 +286,19 @@ def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
     lo, hi, shortened = _ascending(law, lo, hi, min(max(speed, lo), hi))
     if shortened:
         basis.append(f"Beyond {lo:.4g} ... {hi:.4g} m/s the shedding frequency falls with the wind: not looked at.")
-    return _over(law, vortex_shedding(case).lift, (lo, hi), case.pipe.frequency, site, tuple(basis), True)
+    found = _over(law, vortex_shedding(case).lift, (lo, hi), case.pipe.frequency, site, tuple(basis), True)
+    return replace(found, doubts=(*doubts, *_left_out(case, law, most_mass_ratio)))
+
+
+def _beyond_the_site(speed: float, ends: list[float], site: tuple[float, float]) -> tuple[str, ...]:
+    """The sentence for a site that has neither the wind of the case nor any that excites the pipe."""
+    if not ends or site[0] <= speed <= site[1] or (min(ends) <= site[1] and max(ends) >= site[0]):
+        return ()
+    return (
+        f"The site has winds of {site[0]:g} ... {site[1]:g} m/s: neither the wind of the case, {speed:g} m/s, nor any"
+        f" that excites the pipe ({min(ends):.4g} ... {max(ends):.4g} m/s) is one of them. These were looked at all the"
+        " same: correct wind.range, the climate or wind.speed.",
+    )
 
 
 def other_modes(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, OperatingRange], ...]:
@@ -287,11 +307,19 @@ def other_modes(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, O
     Vortices lock in to the mode they excite, so that the lift is in step with it and not with the governing one. Only
     of a case whose range was left to itself; a range that was given is all that is asked about.
     """
-    if case.analysis.wind is not None or case.analysis.detuning is not None or isinstance(case.pipe, Pipe):
+    if case.analysis.wind is not None or case.analysis.detuning is not None:
         return ()
     law, (site, _) = wind_excitation(case), site_winds(case)
+    return tuple((other, _of_another_mode(other, law, winds, site))
+                 for other, winds in _beside(case, most_mass_ratio) if ascending_stretches(law, *winds))  # fmt: skip
+
+
+def _beside(case: Case, most_mass_ratio: float) -> Iterator[tuple[Case, tuple[float, float]]]:
+    """The other modes of an elastic pipe that winds of its site excite: a case that each governs, and these winds."""
+    if isinstance(case.pipe, Pipe):
+        return
+    law, (site, _) = wind_excitation(case), site_winds(case)
     reached, governing = law.speed_range, case.pipe.governing_mode
-    found = []
     for mode in range(1, case.pipe.modal.count + 1):
         if mode == governing:
             continue
@@ -300,11 +328,50 @@ def other_modes(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, O
         ends = _winds_of(law, band)
         lo = max(min(ends, default=math.inf), site[0], reached[0])
         hi = min(max(ends, default=0.0), site[1], reached[1])
-        if lo < hi * (1 - _SAME) and law.is_monotone(lo, hi):
-            basis = (f"Winds of {lo:.4g} ... {hi:.4g} m/s excite mode {mode}, with the lift in step with it.",)
-            lift = vortex_shedding(other).lift
-            found.append((other, _over(law, lift, (lo, hi), other.pipe.frequency, site, basis, True)))
-    return tuple(found)
+        if lo < hi * (1 - _SAME):
+            yield other, (lo, hi)
+
+
+def left_out(case: Case, most_mass_ratio: float = 0.0) -> tuple[str, ...]:
+    """Sentences on other modes that are not looked at in full, because the shedding frequency falls with the wind."""
+    if case.analysis.wind is not None or case.analysis.detuning is not None:
+        return ()
+    partly = (doubt for _, within in other_modes(case, most_mass_ratio) for doubt in within.doubts)
+    return (*partly, *_left_out(case, wind_excitation(case), most_mass_ratio))
+
+
+def _left_out(case: Case, law: WindExcitation, most_mass_ratio: float) -> tuple[str, ...]:
+    """Sentences on other modes that winds excite only where the shedding frequency falls with the wind."""
+    return tuple(
+        f"Winds of {winds[0]:.4g} ... {winds[1]:.4g} m/s excite mode {other.pipe.governing_mode}, but the shedding"  # type: ignore[union-attr]
+        " frequency falls with the wind in all of them: it was not looked at."
+        for other, winds in _beside(case, most_mass_ratio)
+        if not ascending_stretches(law, *winds)
+    )
+
+
+def _of_another_mode(
+    case: Case, law: WindExcitation, winds: tuple[float, float], site: tuple[float, float]
+) -> OperatingRange:
+    """The winds that excite a mode; where the shedding frequency falls with the wind only a part, and a doubt."""
+    mode, omega = case.pipe.governing_mode, case.pipe.frequency  # type: ignore[union-attr]
+    lo, hi = max(ascending_stretches(law, *winds), key=lambda one: _nearness(law, one, omega))
+    doubts: tuple[str, ...] = ()
+    if (lo, hi) != winds:
+        doubts = (
+            f"Winds of {winds[0]:.4g} ... {winds[1]:.4g} m/s excite mode {mode}, but the shedding frequency falls with"
+            f" the wind in part of them: it was looked at in {lo:.4g} ... {hi:.4g} m/s only.",
+        )
+    basis = (f"Winds of {lo:.4g} ... {hi:.4g} m/s excite mode {mode}, with the lift in step with it.",)
+    found = _over(law, vortex_shedding(case).lift, (lo, hi), omega, site, basis, True)
+    return replace(found, doubts=doubts)
+
+
+def _nearness(law: WindExcitation, winds: tuple[float, float], omega: float) -> tuple[bool, float]:
+    """Whether a stretch of winds sheds at a frequency [rad/s], and its strongest wind, or else its width [m/s]."""
+    low, high = (float(law.frequency(U)) for U in winds)
+    inside = low <= omega <= high
+    return inside, winds[1] if inside else winds[1] - winds[0]
 
 
 def excited_bands(case: Case, most_mass_ratio: float = 0.0) -> list[tuple[float, float]]:
@@ -351,6 +418,18 @@ def _ascending(law: WindExcitation, lo: float, hi: float, inside: float) -> tupl
     while last + 1 < len(good) and good[last + 1] and law.is_monotone(edges[first], edges[last + 2]):
         last += 1
     return float(edges[first]), float(edges[last + 1]), True
+
+
+def ascending_stretches(law: WindExcitation, lo: float, hi: float) -> list[tuple[float, float]]:
+    """Every stretch of winds [m/s] in which the shedding frequency ascends with the wind, as long as each can be."""
+    edges = [float(edge) for edge in np.unique([lo, hi, *law.kinks(lo, hi)])]
+    found: list[tuple[float, float]] = []
+    for a, b in pairwise(edges):
+        if not law.is_monotone(a, b):
+            continue
+        joined = found and found[-1][1] == a and law.is_monotone(found[-1][0], b)
+        found.append((found.pop()[0], b) if joined else (a, b))
+    return found
 
 
 def _factor(law: WindExcitation, lift: float, lo: float, hi: float) -> Floats:

@@ -10,7 +10,7 @@ from frahm.arrays import Floats
 from frahm.case import Case
 from frahm.errors import check_number
 from frahm.loads.over_wind import wind_excitation
-from frahm.loads.vortex import vortex_shedding
+from frahm.loads.vortex import VortexShedding, vortex_shedding
 
 
 @dataclass(frozen=True)
@@ -171,6 +171,21 @@ def lock_in_band(case: Case, ratios: tuple[float, float] | None = None) -> LockI
         standing="of the user" if given else "secondary",
         source="given" if given else LOCK_IN_SOURCE,
     )
+
+
+def resonant_shedding(case: Case) -> VortexShedding:
+    """What the wind does in resonance with the governing mode: the lift by which a case is asked about.
+
+    That of the wind that sheds there; that of the wind of the case where one lift is asked for at every frequency
+    (`analysis.detuning`), or where the tables of the case do not reach the resonance.
+
+    Parameters
+    ----------
+    case : Case
+    """
+    one_lift = case.analysis.detuning is not None and case.analysis.wind is None
+    speed = lock_in_band(case).resonance
+    return vortex_shedding(case, None if one_lift or math.isnan(speed) else speed)
 
 
 def _end(speeds: Floats, choose: Callable[[Floats], float], otherwise: float) -> float:

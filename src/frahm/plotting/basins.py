@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from frahm import readable
+from frahm.plotting.lines import MM
 from frahm.plotting.style import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILLION, new_figure
 
 if TYPE_CHECKING:
@@ -20,8 +21,8 @@ _LOST = {
     -4: ("not computed", "#ffffff"),
 }  # fmt: skip
 BASIN_AXES = {
-    "x1": "initial displacement of the pipe x₁ [m]", "v1": "initial velocity of the pipe [m/s]",
-    "z": "initial displacement of the absorber z [m]", "w": "initial velocity of the absorber [m/s]",
+    "x1": "initial displacement of the pipe x₁ [mm]", "v1": "initial velocity of the pipe [mm/s]",
+    "z": "initial displacement of the absorber z [mm]", "w": "initial velocity of the absorber [mm/s]",
 }  # fmt: skip
 
 
@@ -51,10 +52,11 @@ def basin_map_figure(data: xr.Dataset) -> Figure:
 
     across, up = data["label"].dims
     entries, index = basin_entries(data), basin_indices(data)
+    colours = ListedColormap([entry.colour for entry in entries])
     figure = new_figure(160, 120)
     axes = figure.subplots()
     axes.pcolormesh(
-        data[across].values, data[up].values, index.T, cmap=ListedColormap([entry.colour for entry in entries]),
+        MM * data[across].values, MM * data[up].values, index.T, cmap=colours,
         vmin=-0.5, vmax=len(entries) - 0.5, shading="nearest", rasterized=True,
     )  # fmt: skip
     axes.plot(0, 0, "+", color=INK, markersize=9, markeredgewidth=1.2, label="rest")

@@ -38,10 +38,10 @@ def save_design_figures(
     paths = []
     with figure_style():
         if lasting is not None:
-            paths += save_figure(decision_figure(lasting, marks), Path(folder) / "decision")
+            paths += save_figure(decision_figure(lasting, marks), Path(folder) / "decision", narrow=True)
             paths += write_data(lasting, Path(folder) / "decision.csv")
         for name, _, draw in drawings:
-            paths += save_figure(draw(), Path(folder) / name)
+            paths += save_figure(draw(), Path(folder) / name, narrow=True)
     for name, dimension, _ in drawings:
         paths += write_data(_shown(curve if dimension == "point" else data, dimension), Path(folder) / f"{name}.csv")
     return paths

@@ -30,7 +30,7 @@ def save_figures(results: dict[str, Any], data: dict[str, xr.Dataset], folder: s
     paths = []
     with figure_style():
         for name, draw in drawings(results, data):
-            paths += save_figure(draw(), Path(folder) / name)
+            paths += save_figure(draw(), Path(folder) / name, narrow=name == "decision")
     for name, dataset in figure_data(results, data):
         paths += write_data(dataset, Path(folder) / f"{name}.csv")
     return paths
@@ -41,12 +41,17 @@ def stands_over_wind(data: dict[str, xr.Dataset]) -> bool:
     return "response" in data and "wind_speed" in data["response"]
 
 
+def bare_beside(results: dict[str, Any], data: dict[str, xr.Dataset]) -> xr.Dataset | None:
+    """The response without absorbers, to stand beside that of a case; nothing where the case has none either."""
+    return data.get("without_absorber") if results["has_absorber"] else None
+
+
 def drawings(results: dict[str, Any], data: dict[str, xr.Dataset]) -> Iterator[Drawing]:
     """Name and drawing of every figure the results allow."""
     views = motion_views(results, data)
     if "decision" in data:
         yield "decision", partial(decision_figure, data["decision"], marks_of(results))
-    curve, bare = data.get("response"), data.get("without_absorber")
+    curve, bare = data.get("response"), bare_beside(results, data)
     if curve is not None:
         for quantity, name in (("pipe_peak", "response-pipe"), ("relative_peak", "response-absorber")):
             if quantity in curve:

@@ -146,7 +146,7 @@ def basin_map_plot(data: xr.Dataset) -> PlainFigure:
     figure = PlainFigure()
     figure.add_trace(
         "heatmap",
-        x=single(data[across].values), y=single(data[up].values), z=index.T.astype(np.int8),
+        x=single(MM * data[across].values), y=single(MM * data[up].values), z=index.T.astype(np.int8),
         zmin=-0.5, zmax=count - 0.5, colorscale=scale, showscale=False,
         hovertemplate="%{x:.3g}, %{y:.3g}<extra></extra>",
     )  # fmt: skip
@@ -191,12 +191,12 @@ def manifold_plot(manifold: xr.Dataset, motion: MotionView | None, folds: dict[s
     """Slow manifold with folds, jumps and the trajectory of a motion."""
     figure = PlainFigure()
     if motion is not None and motion.slow is not None:
-        Z, X = motion.slow
+        Z, X = (MM * size for size in motion.slow)
         figure.add_scatter(
             x=single(Z), y=single(X), mode="lines", line={"color": GREEN, "width": 1},
             name=f"motion at {motion.where}",
         )  # fmt: skip
-    Z, X = manifold["relative_amplitude"].values, manifold["pipe_amplitude"].values
+    Z, X = MM * manifold["relative_amplitude"].values, MM * manifold["pipe_amplitude"].values
     attracting = manifold["attracting"].values > 0
     for holds, name, dash in ((attracting, "attracting", "solid"), (~attracting, "repelling", "dash")):
         if np.any(holds):
@@ -206,17 +206,18 @@ def manifold_plot(manifold: xr.Dataset, motion: MotionView | None, folds: dict[s
     if folds:
         _add_folds(figure, folds)
     figure.update_layout(**plot_layout(460))
-    figure.update_axes("x", title={"text": "amplitude of the absorber |Z| [m]"}, rangemode="tozero")
+    figure.update_axes("x", title={"text": "amplitude of the absorber |Z| [mm]"}, rangemode="tozero")
     figure.update_axes(
-        "y", title={"text": "amplitude of the pipe |X| [m]"}, range=[0, manifold_height(manifold, motion, folds)]
+        "y", title={"text": "amplitude of the pipe |X| [mm]"}, range=[0, MM * manifold_height(manifold, motion, folds)]
     )
     return figure
 
 
 def _add_folds(figure: PlainFigure, folds: dict[str, Any]) -> None:
     mark = {"color": INK, "size": 10, "symbol": "triangle-up"}
-    figure.add_scatter(x=folds["relative"], y=folds["pipe"], mode="markers", marker=mark, name="fold")
-    for i, (start, end, height) in enumerate(zip(folds["relative"], folds["landing"], folds["pipe"], strict=True)):
+    starts, ends, heights = ([MM * size for size in folds[name]] for name in ("relative", "landing", "pipe"))
+    figure.add_scatter(x=starts, y=heights, mode="markers", marker=mark, name="fold")
+    for i, (start, end, height) in enumerate(zip(starts, ends, heights, strict=True)):
         figure.add_scatter(
             x=[start, end], y=[height, height], mode="lines+markers", name="jump", legendgroup="jump",
             showlegend=i == 0, line={"color": SINK, "dash": "dot"},

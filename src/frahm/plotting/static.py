@@ -135,8 +135,8 @@ def manifold_figure(manifold: xr.Dataset, motion: MotionView | None = None, fold
     figure = new_figure(160, 100)
     axes = figure.subplots()
     if motion is not None and motion.slow is not None:
-        axes.plot(*motion.slow, color=GREEN, linewidth=0.7, label=f"motion at {motion.where}")
-    Z, X = manifold["relative_amplitude"].values, manifold["pipe_amplitude"].values
+        axes.plot(*(MM * size for size in motion.slow), color=GREEN, linewidth=0.7, label=f"motion at {motion.where}")
+    Z, X = MM * manifold["relative_amplitude"].values, MM * manifold["pipe_amplitude"].values
     attracting = manifold["attracting"].values > 0
     axes.plot(Z, np.where(attracting, X, np.nan), color=INK, label="slow manifold, attracting")
     if not attracting.all():
@@ -144,12 +144,13 @@ def manifold_figure(manifold: xr.Dataset, motion: MotionView | None = None, fold
             Z, np.where(attracting, np.nan, X), linestyle=UNSTABLE_DASHES, color=INK, label="slow manifold, repelling"
         )
     if folds:
-        axes.plot(folds["relative"], folds["pipe"], "^", color=INK, markersize=6, label="fold")
-        for start, end, height in zip(folds["relative"], folds["landing"], folds["pipe"], strict=True):
+        starts, ends, heights = ([MM * size for size in folds[name]] for name in ("relative", "landing", "pipe"))
+        axes.plot(starts, heights, "^", color=INK, markersize=6, label="fold")
+        for start, end, height in zip(starts, ends, heights, strict=True):
             axes.annotate("", (end, height), (start, height), arrowprops={"arrowstyle": "->", "color": SINK})
-        axes.axhline(folds["pipe_ceiling"], color=SINK, linestyle=":", linewidth=1.0, label="ceiling of the pipe")
-    axes.set(xlabel="amplitude of the absorber relative to the pipe |Z| [m]", ylabel="amplitude of the pipe |X| [m]")
-    axes.set(xlim=(0, None), ylim=(0, manifold_height(manifold, motion, folds)))
+        axes.axhline(MM * folds["pipe_ceiling"], color=SINK, linestyle=":", linewidth=1.0, label="ceiling of the pipe")
+    axes.set(xlabel="amplitude of the absorber relative to the pipe |Z| [mm]", ylabel="amplitude of the pipe |X| [mm]")
+    axes.set(xlim=(0, None), ylim=(0, MM * manifold_height(manifold, motion, folds)))
     axes.legend(loc="upper left")
     return figure
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import io
 import math
+import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -39,6 +40,9 @@ _RULES: dict[Any, Any] = {
     "svg.fonttype": "none",
 }
 _INCH = 25.4
+NARROW = "-narrow"  # behind the name of a drawing for a narrow screen
+_NARROW_WIDTH, _LEGEND_LINE = 94.0, 4.5  # [mm]
+_NARROW_LABEL = 42  # characters
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -58,19 +62,47 @@ def new_figure(width: float = 160.0, height: float = 90.0) -> Figure:
     return Figure(figsize=(width / _INCH, height / _INCH), layout="constrained")
 
 
-def save_figure(figure: Figure, stem: str | Path) -> list[Path]:
-    """Write `stem`.png and `stem`.svg, each complete or not at all; return their paths."""
-    from frahm.files import write_bytes
+def save_figure(figure: Figure, stem: str | Path, *, narrow: bool = False) -> list[Path]:
+    """Write `stem`.png and `stem`.svg, each complete or not at all; return their paths.
 
+    If `narrow`, `stem`-narrow.svg too: the same for the screen of a telephone.
+    """
     paths = [Path(f"{stem}.svg"), Path(f"{stem}.png")]
     arrange(figure)
     for path in paths:
-        metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
-        packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}} if path.suffix == ".png" else {}
-        drawn = io.BytesIO()
-        figure.savefig(drawn, format=path.suffix.removeprefix("."), dpi=160, metadata=metadata, **packed)
-        write_bytes(path, drawn.getvalue())
+        _write(figure, path)
+    if narrow:
+        paths.append(Path(f"{stem}{NARROW}.svg"))
+        _make_narrow(figure)
+        _write(figure, paths[-1])
     return paths
+
+
+def _write(figure: Figure, path: Path) -> None:
+    from frahm.files import write_bytes
+
+    metadata = {"Date": None} if path.suffix == ".svg" else {"Software": None}
+    packed: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}} if path.suffix == ".png" else {}
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format=path.suffix.removeprefix("."), dpi=160, metadata=metadata, **packed)
+    write_bytes(path, drawn.getvalue())
+
+
+def _make_narrow(figure: Figure) -> None:
+    """Arrange a figure anew: text as large as before, an entry of the legend a line, long labels in several lines."""
+    more = 0
+    for legend in list(figure.legends):
+        handles = [handle for handle in legend.legend_handles if handle is not None]
+        texts = [text.get_text() for text in legend.get_texts()]
+        legend.remove()
+        figure.legend(handles, texts, loc="outside lower center", ncols=1)
+        more += len(texts) - 1
+    for axes in figure.axes:
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_label_text(textwrap.fill(axis.get_label_text(), _NARROW_LABEL))
+    figure.set_size_inches(_NARROW_WIDTH / _INCH, figure.get_figheight() + more * _LEGEND_LINE / _INCH)
+    figure.set_layout_engine("constrained")
+    arrange(figure)
 
 
 def arrange(figure: Figure) -> None:

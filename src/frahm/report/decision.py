@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from frahm import readable
+from frahm.assessment import headline
+from frahm.design import SIMPLEST_FIRST
 from frahm.plotting.decision import DEVICES
 
 DEVICE_HEAD = [
@@ -21,12 +23,12 @@ _BAR = 1.5  # utilisation that fills the bar
 def banner(acceptance: Mapping[str, Any]) -> tuple[str, str, str]:
     """Status for the colour, the verdict in capitals, and the sentence behind it.
 
-    A case without limits is not coloured as one that keeps them.
+    A case without limits is not coloured as one that was judged.
     """
-    word = str(acceptance["verdict"])
-    status = "open" if word == "pass" and not acceptance["rows"] else _STATUS[word]
-    sentence = str(acceptance["sentence"]).removeprefix(word.upper()).lstrip(":. ")
-    return status, word.upper(), sentence[:1].upper() + sentence[1:]
+    word = headline(acceptance)
+    status = _STATUS[acceptance["verdict"]] if acceptance["rows"] else "open"
+    sentence = str(acceptance["sentence"]).removeprefix(word).lstrip(":. ")
+    return status, word, sentence[:1].upper() + sentence[1:]
 
 
 def limit_rows(acceptance: Mapping[str, Any]) -> list[tuple[str, str, str, float]]:
@@ -61,7 +63,7 @@ def _place(row: Mapping[str, Any]) -> str:
     speed = row["wind_speed"]
     if speed is not None and math.isfinite(speed):
         return readable.speed(speed)
-    return "-" if row["detuning"] is None else f"σ = {round(row['detuning'], 4):.3g} rad/s"
+    return "-" if row["detuning"] is None else f"σ = {round(row['detuning'], 4) + 0.0:.3g} rad/s"
 
 
 def _life(row: Mapping[str, Any]) -> str:
@@ -92,10 +94,15 @@ def ranking_rows(errors: Mapping[str, Any]) -> list[tuple[str, str]]:
     rows = []
     for i, error in enumerate(errors["error"]):
         found = [(peaks[i], name, errors["verified"][name][i]) for name, peaks in errors["pipe_peak"].items()]
-        found.sort(key=lambda item: math.inf if item[0] is None else item[0])
+        found.sort(key=lambda item: (_shown(item[0]), SIMPLEST_FIRST.index(item[1])))
         words = (f"{DEVICES[name]} {readable.in_mm(peak)}{'' if sure else ' ?'}" for peak, name, sure in found)
         rows.append((f"{100 * error:+.3g} %" if abs(error) > 1e-9 else "0 %", ", ".join(words)))
     return rows
+
+
+def _shown(peak: float | None) -> float:
+    """A peak as precisely as it is printed: what reads the same ranks the same."""
+    return math.inf if peak is None else float(f"{peak:.3g}")
 
 
 def left_out_of_ranking(decision: Mapping[str, Any], errors: Mapping[str, Any]) -> str:

@@ -7,23 +7,23 @@ import math
 from pathlib import Path
 from typing import Any
 
-import jinja2
-
 from frahm import readable
-from frahm.analysis import defaulted_fields, provenance
+from frahm.analysis import FORCE_MARGIN, defaulted_fields, provenance
 from frahm.analysis.decision import together
 from frahm.case import Case, Design, field_table, field_values
-from frahm.design import DesignStudy, Objective, Rival, design_summary
+from frahm.design import FAR, DesignStudy, Objective, Rival, design_summary
 from frahm.errors import ParameterError
 from frahm.files import write_text
-from frahm.loads import lock_in_band, vortex_shedding
+from frahm.loads import lock_in_band, resonant_shedding, vortex_shedding
 from frahm.plotting.decision import DEVICES, Marks
 from frahm.plotting.design_figures import save_design_figures
 from frahm.report import decision
 from frahm.report.document import document_rows
+from frahm.report.environment import template
+from frahm.report.numbers import number
 from frahm.report.references import reference_rows
 from frahm.report.report import REPORT_FILE, image_address
-from frahm.report.tables import input_rows, number
+from frahm.report.tables import input_rows
 from frahm.response import frequency_response
 
 
@@ -50,18 +50,13 @@ def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
 
 def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
     """The report as HTML text; `images` are addresses of the figures by name."""
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("frahm.report", "."), autoescape=True, trim_blocks=True, lstrip_blocks=True,
-        keep_trailing_newline=True, undefined=jinja2.StrictUndefined,
-    )  # fmt: skip
-    environment.filters["length_text"] = readable.length
-    objective = study.objective
-    return environment.get_template("design.html.jinja").render(
+    objective, searched = study.objective, FAR * study.settings.force_margin
+    return template("design.html.jinja").render(
         study=study,
         **_head(study),
         asked=asked_rows(study),
         comparison_head=comparison_head(objective),
-        comparison=[*(comparison_row(rival, objective) for rival in study.comparison), ropes_row(objective)],
+        comparison=[*(comparison_row(rival, objective, searched) for rival in study.comparison), ropes_row(objective)],
         error_head=["Device", *(f"{100 * (r - 1):+.3g} %" if r != 1 else "0 %" for r in study.errors)],
         error_rows=error_rows(study),
         trade_off=[
@@ -78,6 +73,7 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         checks=check_rows(study),
         provenance=provenance_rows(study),
         missed=missed_below(study),
+        force_margin=FORCE_MARGIN,
         images=images,
     )  # fmt: skip
 
@@ -133,7 +129,8 @@ def least_stroke(study: DesignStudy) -> str:
     """Motion of the mass below which no absorber balances the force, at the pipe's frequency."""
     ratio = study.best.design.rho2 if study.best.design else math.nan
     case = study.case
-    return readable.length(vortex_shedding(case).lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
+    lift = resonant_shedding(case).lift * float(case.pipe.modal.lift_lengths[0]) / case.pipe.length
+    return readable.length(lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
 
 
 def asked_rows(study: DesignStudy) -> list[tuple[str, ...]]:
@@ -161,8 +158,8 @@ def comparison_head(objective: Objective) -> list[str]:
     ]  # fmt: skip
 
 
-def comparison_row(rival: Rival, objective: Objective) -> tuple[str, ...]:
-    """Name, parameters, worst peaks, force margin, what the numbers rest on."""
+def comparison_row(rival: Rival, objective: Objective, searched: float) -> tuple[str, ...]:
+    """Name, parameters, worst peaks, force margin as far as it was searched, what the numbers rest on."""
     design = rival.design
     parameters: tuple[Any, ...] = ("-",) * 4
     name = DEVICES[rival.name]
@@ -173,7 +170,7 @@ def comparison_row(rival: Rival, objective: Objective) -> tuple[str, ...]:
     more = () if _is_peak(objective) else (_value(rival.value, objective),)
     return (
         name, *parameters, *more, readable.in_mm(rival.worst_pipe_peak), readable.motion(rival.kind), _stroke(rival),
-        _margin(rival.force_margin), _basis(rival), "yes" if rival.verified else "no",
+        _margin(rival.force_margin, searched), _basis(rival), "yes" if rival.verified else "no",
     )  # fmt: skip
 
 
@@ -227,8 +224,11 @@ def _stroke(rival: Rival) -> str:
     return "-" if rival.name == "none" else readable.in_mm(rival.relative_peak)
 
 
-def _margin(value: float) -> str:
-    return "no such curve" if math.isinf(value) else f"{value:.4g}"
+def _margin(value: float, searched: float) -> str:
+    """The force margin of a device; the search for it ends at a factor on the force."""
+    if math.isinf(value):
+        return "no such curve"
+    return f"at least {searched:.4g}" if value >= searched else f"{value:.4g}"
 
 
 def _basis(rival: Rival) -> str:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from frahm import readable
 from frahm.analysis import Analysis
-from frahm.report.tables import number
+from frahm.report.numbers import number
 
 BIN_HEAD = [
-    "Wind [m/s]", "σ [rad/s]", "Share of the time", "Stress range with [MPa]", "without [MPa]", "Motion", "Attractors",
-    "Damage with", "weighted", "without",
+    "Wind [m/s]", "Frequency [Hz]", "Share of the time", "Stress range with [MPa]", "without [MPa]", "Motion",
+    "Attractors", "Damage with", "weighted", "without",
 ]  # fmt: skip
 _MPA = 1e6
 _CASE, _COMPUTED = "given in the case", "computed"
@@ -75,7 +76,8 @@ def bin_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     for i, code in enumerate(columns["kind"]):
         rows.append(
             (
-                f"{columns['speed_lower'][i]:.4g} … {columns['speed_upper'][i]:.4g}", f"{columns['detuning'][i]:.3f}",
+                f"{columns['speed_lower'][i]:.4g} … {columns['speed_upper'][i]:.4g}",
+                number(float(columns["frequency"][i]) / (2 * math.pi)),
                 number(float(columns["probability"][i]), 3), _stress(float(columns["stress_range_with"][i])),
                 _stress(float(columns["stress_range_without"][i])), readable.motion(kinds[code]),
                 str(int(columns["attractors"][i])), _damage(float(columns["damage_with"][i])),

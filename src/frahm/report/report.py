@@ -9,16 +9,15 @@ import zlib
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import numpy as np
 from markupsafe import Markup
 
 from frahm import readable
-from frahm.analysis import Analysis, margin_sentence
+from frahm.analysis import FORCE_MARGIN, Analysis, margin_sentence
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.plotting.fatigue import fatigue_plot
-from frahm.plotting.gallery import save_figures, stands_over_wind
+from frahm.plotting.gallery import bare_beside, save_figures, stands_over_wind
 from frahm.plotting.interactive import CONFIG, basin_map_plot, manifold_plot, motion_plot, response_plot
 from frahm.plotting.over_wind import over_wind_plot
 from frahm.plotting.plain import PlainFigure
@@ -26,10 +25,12 @@ from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
 from frahm.plotting.wind import gusts_plot
 from frahm.report import decision, fatigue_tables, tables
 from frahm.report.document import document_rows
+from frahm.report.environment import template
 from frahm.report.references import reference_rows
 
 REPORT_FILE = "report.html"
 _MOST_MOTIONS = 8
+_DRAWN = ("decision", "decision-narrow")  # not interactive
 _LONG_COORDINATE = re.compile(r"(\.\d)\d+")
 _PATH = re.compile(r' d="[^"]*"')
 
@@ -63,32 +64,22 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
     images : dict of str
         Figures by name as SVG text: for paper, and for readers without JavaScript.
     """
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("frahm.report", "."),
-        autoescape=True,
-        trim_blocks=True,
-        keep_trailing_newline=True,
-        lstrip_blocks=True,
-        undefined=jinja2.StrictUndefined,
-    )
-    environment.filters["number"] = tables.number
-    environment.filters["length_text"] = readable.length
-    environment.filters["with_indices"] = tables.with_indices
     views = motion_views(analysis.results, analysis.data)
     plots = _plots(analysis, views)
-    return environment.get_template("report.html.jinja").render(
+    return template("report.html.jinja").render(
         analysis=analysis,
         **_head(analysis),
         cards=cards(analysis.results),
         results=analysis.results,
         margin=margin_of(analysis.results),
+        force_margin=FORCE_MARGIN,
         tables=tables,
         fatigue_tables=fatigue_tables,
         views=views[:_MOST_MOTIONS],
         more_motions=max(0, len(views) - _MOST_MOTIONS),
         plots=plots,
         zoomed='"narrow":' in plots.get("response-pipe", ""),
-        images={name: image_address(svg) for name, svg in images.items() if name in {*plots, "decision"}},
+        images={name: image_address(svg) for name, svg in images.items() if name in {*plots, *_DRAWN}},
         plotly_js=packed_plotly(),
         plotly_config=CONFIG,
     )
@@ -127,7 +118,7 @@ def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
     figures: dict[str, PlainFigure] = {}
     for name, quantity in (("response-pipe", "pipe_peak"), ("response-absorber", "relative_peak")):
         if "response" in data and quantity in data["response"]:
-            beside = data.get("without_absorber"), data.get("slow_flow"), data.get("modulated")
+            beside = bare_beside(results, data), data.get("slow_flow"), data.get("modulated")
             figures[name] = response_plot(data["response"], quantity, views, *beside)
     for view in views[:_MOST_MOTIONS]:
         figures[f"motion-{view.key}"] = motion_plot(view)

@@ -14,9 +14,15 @@ from frahm import readable
 from frahm.analysis import Analysis
 from frahm.case import Case, field_values
 from frahm.case.fields import FieldValue
+from frahm.errors import Outcome
 from frahm.loads import vortex_shedding
+from frahm.report.numbers import number
+from frahm.report.places import at, over_wind, place_head, span, where
 
 _LISTED = 12  # pairs of a table that are still written out
+ATTRACTOR_HEAD = [
+    "Kind", "Pipe peak [mm]", "Smallest peak of a period [mm]", "Stroke [mm]", "Basin", "95 % interval", "From rest",
+]  # fmt: skip
 _MARKS = {"pass": "✓ pass", "fail": "✗ fail", "unverified": "? unverified"}
 
 
@@ -42,13 +48,6 @@ class InputRow(NamedTuple):
     unit: str
     defaulted: bool
     typed: str = ""
-
-
-def number(value: Any, digits: int = 4) -> str:
-    """A number for people; what is not known is a dash."""
-    if value is None or (isinstance(value, float) and math.isnan(value)):
-        return "-"
-    return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
 
 
 def with_indices(rows: list[tuple[str, ...]]) -> list[list[Markup]]:
@@ -141,7 +140,9 @@ def estimate_sentence(analysis: Analysis) -> str:
     """The interval of the estimates beside the computed amplitude."""
     found = analysis.results["wind"]
     low, high, computed = (readable.in_mm(value) for value in (*found["interval"], found["computed"]))
-    used = f"this analysis uses the harmonic lift of the case, which gives {computed} mm"
+    used = f"this analysis uses the harmonic lift of the case, which gives {computed} mm over its range"
+    if sum(row["ratio"] is not None and not math.isnan(row["ratio"]) for row in found["estimates"]) == 1:
+        return f"No published estimate can be given; {used}."
     return f"The estimates span {low} … {high} mm; {used}."
 
 
@@ -174,8 +175,14 @@ def _percent(value: float | None) -> str:
     return "-" if value is None or not math.isfinite(value) else f"{value:.0%}"
 
 
+def special_point_head(analysis: Analysis) -> list[str]:
+    """Column heads of `special_point_rows`."""
+    place = place_head(analysis)
+    return ["Label", "Kind", place, "Frequency [Hz]", "Pipe peak [mm]", "Stroke [mm]", "Branch", "Status"]
+
+
 def special_point_rows(analysis: Analysis, method: str = "harmonic-balance") -> list[tuple[str, ...]]:
-    """Label, kind, detuning, frequency in Hz, pipe peak, stroke, branch, status of every special point."""
+    """Label, kind, place, frequency in Hz, pipe peak, stroke, branch, status of every special point."""
     from frahm.plotting.lines import KIND_NAMES, special_marks
 
     name = {"harmonic-balance": "response", "slow-flow": "slow_flow"}[method]
@@ -185,7 +192,7 @@ def special_point_rows(analysis: Analysis, method: str = "harmonic-balance") -> 
     detached = {b["number"] for b in found.get("branches", []) if b["detached"]}
     return [
         (
-            mark.label, KIND_NAMES[point["kind"]], number(point["detuning"]),
+            mark.label, KIND_NAMES[point["kind"]], where(point),
             number(point["frequency"] / (2 * math.pi), 5),
             readable.in_mm(point["pipe_peak"]), readable.in_mm(point["relative_peak"]),
             f"{point['branch']}{' (detached)' if point['branch'] in detached else ''}", point["status"],
@@ -203,13 +210,13 @@ def has_asymmetric(results: dict[str, Any]) -> bool:
 
 
 def branch_rows(analysis: Analysis) -> list[tuple[str, ...]]:
-    """Number, kind, range of detuning, largest pipe peak, stability of every branch of the exact response."""
+    """Number, kind, range of wind or detuning, largest pipe peak, stability of every branch of the exact response."""
     found = analysis.results.get("response", {}).get("harmonic-balance", {})
     return [
         (
             str(branch["number"]),
             " ".join(name for name in ("detached", "asymmetric") if branch[name]) or "main",
-            " … ".join(number(edge) for edge in branch["detuning"]),
+            span(branch),
             readable.in_mm(branch["pipe_peak_max"]),
             "yes" if branch["stable_anywhere"] else "no",
         )
@@ -217,20 +224,32 @@ def branch_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     ]
 
 
+def motion_head(analysis: Analysis) -> list[str]:
+    """Column heads of `motion_rows`."""
+    head = [place_head(analysis), "Why here", "Kind", "Pipe peak [mm]", "Smallest peak [mm]", "Pipe rms [mm]"]
+    return [*head, *(("Stroke [mm]", "Without absorber [mm]", "Ratio") if analysis.results["has_absorber"] else ())]
+
+
 def motion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
-    """Detuning, reason, kind, largest and smallest peak, rms, stroke, peak without absorber, ratio of every motion."""
+    """Place, reason, kind, largest and smallest peak and rms of every motion; stroke and what absorbers change."""
     rows: list[tuple[str, ...]] = []
     for motion in analysis.results.get("motions", []):
         peak, bare = motion["pipe_peak"], motion["pipe_peak_without_absorber"]
         ratio = peak / bare if peak is not None and bare else None
-        rows.append(
-            (
-                _where(motion), motion["reason"], readable.motion(motion["kind"]), readable.in_mm(peak),
-                *map(readable.in_mm, (motion["pipe_envelope"][0], motion["pipe_rms"], motion["relative_peak"])),
-                readable.in_mm(bare), f"{ratio:.3g}" if ratio is not None else "-",
-            )
-        )  # fmt: skip
+        pipe = (peak, motion["pipe_envelope"][0], motion["pipe_rms"])
+        row = (where(motion), motion["reason"], _ended(motion), *map(readable.in_mm, pipe))
+        if analysis.results["has_absorber"]:
+            compared = f"{ratio:.3g}" if ratio is not None else "-"
+            row = (*row, readable.in_mm(motion["relative_peak"]), readable.in_mm(bare), compared)
+        rows.append(row)
     return rows
+
+
+def _ended(motion: Mapping[str, Any]) -> str:
+    """Kind of a motion, and what stopped its integration if something did."""
+    outcome = Outcome[str(motion["outcome"]).upper()]
+    kind = readable.motion(str(motion["kind"]))
+    return kind if outcome.ok else f"{kind}: {outcome.value}"
 
 
 def attractor_rows(analysis: Analysis) -> list[tuple[str, ...]]:
@@ -246,10 +265,10 @@ def attractor_rows(analysis: Analysis) -> list[tuple[str, ...]]:
 
 
 def coexisting_rows(analysis: Analysis) -> list[tuple[str, ...]]:
-    """Detuning, kind, peaks and basin of every attractor at frequencies of the window that have several."""
+    """Place, kind, peaks and basin of every attractor at frequencies of the range that have several."""
     return [
         (
-            number(found["detuning"]), _kind(found),
+            where(found), _kind(found),
             *map(readable.in_mm, (found["pipe_peak"], found["relative_peak"])),
             *_basin(found),
         )
@@ -259,7 +278,7 @@ def coexisting_rows(analysis: Analysis) -> list[tuple[str, ...]]:
 
 def _kind(found: dict[str, Any]) -> str:
     multiple = found["period_multiple"]
-    kind = readable.motion(str(found["kind"]))
+    kind = _ended(found)
     return f"{kind}, {multiple} periods" if multiple > 1 else kind
 
 
@@ -274,11 +293,12 @@ def _basin(found: dict[str, Any]) -> tuple[str, str, str]:
 
 def basin_caption(analysis: Analysis) -> str:
     """What the basin map shows, and where."""
-    at, design = analysis.results["basin_map"]["detuning"], vortex_shedding(analysis.case).detuning
-    place = "at the design wind" if math.isclose(at, design, rel_tol=1e-9) else "where the worst motion is"
+    mapped, design = analysis.results["basin_map"], vortex_shedding(analysis.case).detuning
+    here = math.isclose(mapped["detuning"], design, rel_tol=1e-9)
+    place = "at the design wind" if here else "where the worst motion is"
     return (
-        f"Motion reached from an initial displacement and velocity of the pipe {place}, at the detuning"
-        f" {number(at)} rad/s, the absorber at rest relative to it. The cross is rest."
+        f"Motion reached from an initial displacement and velocity of the pipe {place},"
+        f" {at(mapped)}, the absorber at rest relative to it. The cross is rest."
     )
 
 
@@ -298,24 +318,6 @@ def modulated_sentence(analysis: Analysis) -> str:
 
 def _ranges_text(ranges: list[list[float]]) -> str:
     return " and ".join(f"{number(lo)} … {number(hi)}" for lo, hi in ranges)
-
-
-def place_head(analysis: Analysis) -> str:
-    """Head of the column that says where a motion is."""
-    return "Wind [m/s]" if analysis.results.get("decision", {}).get("over") == "wind" else "σ [rad/s]"
-
-
-def _where(found: dict[str, Any]) -> str:
-    """Wind speed, or the detuning where the lift is fixed."""
-    speed = found.get("wind_speed")
-    return number(found["detuning"]) if speed is None or math.isnan(speed) else number(speed)
-
-
-def _at(found: dict[str, Any]) -> str:
-    speed = found.get("wind_speed")
-    if speed is None or math.isnan(speed):
-        return f"at {number(found['detuning'])} rad/s"
-    return f"at {readable.speed(speed)}"
 
 
 def other_mode_rows(analysis: Analysis) -> list[tuple[str, ...]]:
@@ -338,7 +340,7 @@ def worst_sentence(analysis: Analysis) -> str:
     return (
         f"Over the range of operation the largest pipe peak of an attractor that at least"
         f" {100 * worst['min_basin']:.3g} % of the sampled states reach is {readable.length(worst['pipe_peak'])}"
-        f" ({readable.motion(worst['kind'])}, {_at(worst)}), and the largest stroke"
+        f" ({readable.motion(worst['kind'])}, {at(worst)}), and the largest stroke"
         f" {readable.length(worst['relative_peak'])}, from {worst['frequencies_searched']} frequencies searched;"
         f" {'verified' if worst['verified'] else 'unverified'}."
     )
@@ -346,7 +348,7 @@ def worst_sentence(analysis: Analysis) -> str:
 
 def comparison_head(analysis: Analysis) -> list[str]:
     """Column heads of `comparison_rows`."""
-    return ["σ [rad/s]", *(head for head, _, _ in _comparisons(analysis))]
+    return [place_head(analysis), *(head for head, _, _ in _comparisons(analysis))]
 
 
 def comparison_rows(analysis: Analysis) -> list[tuple[str, ...]]:
@@ -355,7 +357,8 @@ def comparison_rows(analysis: Analysis) -> list[tuple[str, ...]]:
         return []
     table = analysis.data["cross_check"].sortby("detuning")
     columns = [[form(float(value)) for value in table[name].values] for _, name, form in _comparisons(analysis)]
-    return list(zip([number(float(sigma)) for sigma in table["detuning"].values], *columns, strict=True))
+    places = table["wind_speed" if over_wind(analysis) else "detuning"].values
+    return list(zip([number(float(place)) for place in places], *columns, strict=True))
 
 
 def _comparisons(analysis: Analysis) -> list[tuple[str, str, Callable[[float], str]]]:
@@ -363,9 +366,9 @@ def _comparisons(analysis: Analysis) -> list[tuple[str, str, Callable[[float], s
     columns: list[tuple[str, str, Callable[[float], str]]] = []
     for name, text in (("pipe", "Pipe"), ("relative", "Stroke")):
         columns += [
-            (f"{text}, harmonic balance [m]", f"{name}_peak", lambda value: number(value, 6)),
+            (f"{text}, harmonic balance [mm]", f"{name}_peak", lambda value: number(1e3 * value, 6)),
             ("Off integration by", f"{name}_error", lambda value: f"{value:+.1e}"),
-            (f"{text}, slow flow [m]", f"slow_{name}_peak", number),
+            (f"{text}, slow flow [mm]", f"slow_{name}_peak", lambda value: number(1e3 * value)),
             ("Off by", f"slow_{name}_error", lambda value: f"{value:+.2%}"),
         ]
     return [column for column in columns if column[1] in analysis.data["cross_check"]]
@@ -386,11 +389,11 @@ def manifold_rows(analysis: Analysis) -> list[tuple[str, str, str]]:
     if folds is None:
         return rows
     rows += [
-        ("Upper fold: pipe |X|, the ceiling of the modulated response", number(float(folds["pipe"][0])), "m"),
-        ("Upper fold: absorber |Z|", number(float(folds["relative"][0])), "m"),
-        ("Absorber |Z| after the jump, the ceiling of the stroke", number(float(folds["landing"][0])), "m"),
-        ("Lower fold: pipe |X|", number(float(folds["pipe"][1])), "m"),
-        ("Lower fold: absorber |Z|", number(float(folds["relative"][1])), "m"),
+        ("Upper fold: pipe |X|, the ceiling of the modulated response", readable.in_mm(folds["pipe"][0]), "mm"),
+        ("Upper fold: absorber |Z|", readable.in_mm(folds["relative"][0]), "mm"),
+        ("Absorber |Z| after the jump, the ceiling of the stroke", readable.in_mm(folds["landing"][0]), "mm"),
+        ("Lower fold: pipe |X|", readable.in_mm(folds["pipe"][1]), "mm"),
+        ("Lower fold: absorber |Z|", readable.in_mm(folds["relative"][1]), "mm"),
     ]
     modulated = [m for m in analysis.results.get("motions", []) if m["kind"] == "modulated"]
     if modulated:

@@ -8,6 +8,8 @@ from typing import Any
 from frahm.case import Case
 from frahm.web.tuned import tuned_case
 
+# Steps that put nothing to the test, and that the verdict does not read.
+_ONLY_SHOWN = ("wind", "detached_curve_margin", "manifold", "basins", "decision")
 DEVICES = ("bare", "this", "tuned")
 
 
@@ -26,27 +28,24 @@ def decision(case: Case, progress: Callable[[str, int, int], None], *, device: s
     -------
     dict
         "worst": row of the worst motion, None if there is no bounded one; "acceptance" as in the summary of
-        `frahm run`, of the limits alone; "lock_in" and "range" as there.
+        `frahm run`, with every check of its steps; "lock_in" and "range" as there.
     """
-    from frahm.analysis.acceptance import acceptance, judged_limits
+    from frahm.analysis import STEPS
+    from frahm.analysis.acceptance import judged_limits
     from frahm.analysis.fatigue import fatigue
     from frahm.analysis.linear import without_absorber
-    from frahm.analysis.long_term import worst
-    from frahm.analysis.motions import motions
-    from frahm.analysis.response import exact_response
     from frahm.analysis.section import FAIL, UNVERIFIED, Work
-    from frahm.analysis.verdict import largest_motion, lock_in
     from frahm.assessment import accepted, utilisations
 
     if device == "bare":
         return _bare(
             case, without_absorber(Work(case)), fatigue(Work(case.without_absorbers())), utilisations, accepted
         )
-    steps = (without_absorber, exact_response, motions, worst, fatigue, largest_motion, lock_in, acceptance)
+    steps = [step for step in STEPS if step.run.__name__ not in _ONLY_SHOWN]
     work = Work(tuned_case(case) if device == "tuned" else case)
     for number, step in enumerate(steps):
         progress(device, number, len(steps))
-        work = work.with_section(step(work))
+        work = work.with_section(step.run(work))
     doubts = [*work.done.unverified, *(c.detail for c in work.done.checks if c.status in (FAIL, UNVERIFIED))]
     results = work.done.results
     return {

@@ -36,9 +36,6 @@ OVER_WIND = (
 )
 
 
-NO_LIMITS = "The case gives no limits to hold the motion against: see its section limits."
-
-
 def no_slow_status(case: Case) -> str:
     """Why the slow flow is not drawn."""
     if not case.absorbers:
@@ -153,6 +150,8 @@ def _attractor_cells(row: dict[str, Any]) -> list[html.Td]:
 
 def decision_row(case: Case, device: str, found: dict[str, Any]) -> dict[str, str]:
     """Cells of a row of the decision, in units people use, and the sentence that belongs to it."""
+    from frahm.assessment import headline
+
     worst, judged = found["worst"], found["acceptance"]
     if worst is None:
         return no_decision("; ".join(found["unverified"]))
@@ -167,10 +166,10 @@ def decision_row(case: Case, device: str, found: dict[str, Any]) -> dict[str, st
     return {
         "peak": readable.length(worst["pipe_peak"]),
         "ratio": f"{worst['pipe_peak'] / case.pipe.diameter:.3g}",
-        "place": f"at {readable.speed(speed)}" if windy else f"at σ = {worst['detuning']:.3g} rad/s",
+        "place": f"at {readable.speed(speed)}" if windy else f"at σ = {round(worst['detuning'], 4) + 0.0:.3g} rad/s",
         "used": limits,
-        "verdict": judged["verdict"].upper() if judged["rows"] or found["unverified"] else "NO LIMITS",
-        "sentence": (judged["sentence"] if judged["rows"] else NO_LIMITS) + doubt + _about_band(case)
+        "verdict": headline(judged),
+        "sentence": judged["sentence"] + doubt + _about_band(case)
         if device == ("this" if case.absorbers else "bare")
         else "",
     }

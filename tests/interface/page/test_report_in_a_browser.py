@@ -83,6 +83,31 @@ def test_nothing_is_wider_than_the_screen(shown, width):
     assert clipped == 0
 
 
+@pytest.fixture(scope="module")
+def judged(tmp_path_factory):
+    """Everything that `frahm run` says of a bare pipe in the wind."""
+    case = frahm.load_case(Path(__file__).parents[2] / "cases" / "chimney.yaml")
+    return reported(case, [step.run for step in steps.STEPS], tmp_path_factory.mktemp("judged"))
+
+
+@pytest.mark.parametrize("width", [390, 1280, 1920])
+def test_the_page_that_decides_fits_the_screen(shown, judged, width):
+    page = shown(width, judged)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    cut = "[...document.querySelectorAll('figure')].filter((f) => f.scrollWidth > f.clientWidth + 1).length"
+    assert page.evaluate(cut) == 0
+    image = page.locator("figure.head img")
+    shape = image.evaluate("(one) => ({shown: one.clientWidth, drawn: one.naturalWidth, source: one.currentSrc})")
+    narrow = (judged / "figures" / "decision-narrow.svg").exists()
+    assert narrow
+    assert (shape["source"] == page.locator("figure.head source").get_attribute("srcset")) == (width == 390)
+    assert shape["shown"] >= 0.95 * min(shape["drawn"], width)  # nothing is shrunk until it cannot be read
+    if width == 1920:  # what was found stands beside its figure
+        lead, figure = page.locator("p.lead").bounding_box(), page.locator("figure.head").bounding_box()
+        assert lead["x"] + lead["width"] <= figure["x"]
+        assert figure["x"] + figure["width"] - lead["x"] > 0.75 * width
+
+
 def test_an_elastic_pipe_is_shown_as_one(shown, tmp_path):
     elastic = reported(frahm.load_case("jacket-pipe-elastic"), (without_absorber, wind), tmp_path)
     for width in (1280, 390):

@@ -8,6 +8,7 @@ from frahm.analysis import Analysis, modulated
 from frahm.analysis.long_term import _row
 from frahm.analysis.modulated import basins
 from frahm.analysis.section import Section, Work
+from frahm.loads import operating_range
 from frahm.report.tables import basin_caption, coexisting_rows
 
 CASE = frahm.load_case("jacket-pipe").with_absorber(xi2=0.0085)
@@ -18,7 +19,7 @@ DETACHED = -0.1  # below the upper saddle-node of the detached branch, -.09507 b
 def detached():
     """Attractors where the detached branch is stable, as a search over the window leaves them."""
     found = frahm.find_attractors(CASE, detuning=DETACHED, samples=12, seed=1)
-    return [_row(attractor) for attractor in found]
+    return [_row(attractor, operating_range(CASE)) for attractor in found]
 
 
 def results(at_design, coexisting):
@@ -39,6 +40,12 @@ def test_one_motion_at_the_design_wind_and_several_at_the_worst(detached, monkey
         interrupted=False, version="",
     )  # fmt: skip
     assert "where the worst motion is" in basin_caption(analysis)
+    assert "at -0.1 rad/s" in basin_caption(analysis)
+    windy = Analysis(
+        case=CASE, results={"coexisting": [detached[0] | {"wind_speed": 2.59}]}, data={}, checks=(), unverified=(),
+        notes=(), interrupted=False, version="",
+    )  # fmt: skip
+    assert coexisting_rows(windy)[0][0] == "2.59"
     rows = coexisting_rows(analysis)
     assert [row[0] for row in rows] == ["-0.1"] * len(detached)
     assert {row[-1] for row in rows} == {"yes", "no"}

@@ -9,12 +9,14 @@ import frahm
 from frahm.analysis import STEPS, Work, analyse, load_analysis, margin_sentence, save_analysis
 from frahm.analysis import analysis as analysis_module
 from frahm.analysis import cross_check as cross_check_module
+from frahm.analysis import margin as margin_module
 from frahm.analysis.analysis import plain
 from frahm.analysis.cross_check import cross_check
 from frahm.analysis.gusts import gusts
 from frahm.analysis.linear import without_absorber
 from frahm.analysis.margin import detached_curve_margin
 from frahm.analysis.response import exact_response, slow_flow_response
+from frahm.analysis.section import Section
 from frahm.analysis.wind import wind
 from frahm.plotting.gallery import drawings
 from frahm.reproduction.motions import equilibrium_state
@@ -148,7 +150,9 @@ def test_a_detached_curve_appears_just_beyond_the_margin():
     assert not has_detached(case, 0.995 * ahead["force"])
     assert has_detached(case, 1.005 * ahead["force"])
     assert -0.2 < ahead["detuning"] < 0
-    assert f"With {ahead['force'] - 1:.1%} more force a detached response curve appears" in margin_sentence(margin)
+    assert margin["force_margin"] == ahead["force"]
+    said = f"The force margin is {ahead['force']:.4g}: beyond that factor on the force a detached response curve"
+    assert margin_sentence(margin).startswith(said)
 
 
 def test_the_force_at_which_an_existing_detached_curve_was_born():
@@ -157,7 +161,20 @@ def test_the_force_at_which_an_existing_detached_curve_was_born():
     assert margin["exists"]
     assert not has_detached(case, 0.995 * margin["born"]["force"])
     assert has_detached(case, 1.005 * margin["born"]["force"])
-    assert f"{1 - margin['born']['force']:.1%} less force" in margin_sentence(margin)
+    assert margin["force_margin"] == margin["born"]["force"] < 1
+    assert margin_sentence(margin).startswith(f"The force margin is {margin['force_margin']:.4g}: ")
+
+
+@pytest.mark.parametrize("birth", [1.013, 1.0634, 1.42, 2.9])
+def test_over_the_winds_the_margin_is_bisected_to_the_birth(monkeypatch, birth):
+    case = frahm.load_case(CASE.to_dict() | {"analysis": {}})
+    curve = {"special_points": [], "branches": []}
+    work = Work(case, Section(results={"response": {"harmonic-balance": curve}}, data={"response": None}))
+    monkeypatch.setattr(margin_module, "_detached_count", lambda _, force: int(force >= birth))
+    monkeypatch.setattr(margin_module, "_born", lambda _, force: {"force": force})
+    found = detached_curve_margin(work).results["response"]["harmonic-balance"]["detached_curve_margin"]
+    assert found["force_margin"] < birth <= found["next_event"]["force"]
+    assert found["force_margin"] == pytest.approx(found["next_event"]["force"], rel=1e-3)
 
 
 def test_no_margin_where_no_detached_curve_can_be():
@@ -165,7 +182,7 @@ def test_no_margin_where_no_detached_curve_can_be():
     assert margin_at(CASE.with_wind(lift_coefficient=0)) is None
     soft = margin_at(CASE.with_absorber(kappa=24.425, xi2=0.0085).with_analysis(detuning=(-0.2, 0.2)))
     assert (soft["exists"], soft["next_event"], soft["searched"]) == (False, None, [1.0, 3.0])
-    assert "up to 3 times the force" in margin_sentence(soft)
+    assert margin_sentence(soft).startswith("The force margin is at least 3: ")
 
 
 def test_an_interruption_keeps_the_finished_steps(monkeypatch, tmp_path):
@@ -206,8 +223,10 @@ def test_what_the_slow_flow_cannot_treat_has_an_exact_response():
     assert all(check.status == "pass" for check in done.checks)
     # the window leaves the resonance out, and nothing else is in doubt
     assert done.unverified
-    assert all(re.match("Beyond the range|The worst motion sits at the lower end|The search for the worst case missed a"
-                        " motion of 15.1 mm", doubt) for doubt in done.unverified)  # fmt: skip
+    assert all(re.match("The worst motion sits at the lower end", doubt) for doubt in done.unverified)
+    (outside,) = (note for note in done.notes if note.startswith("Outside the range asked about, at detuning 0 rad/s"))
+    assert "15.1 mm" in outside
+    assert done.results["largest_motion"]["pipe_peak"] == done.results["worst_case"]["pipe_peak"] < 0.0151
     assert set(done.results["response"]) == {"harmonic-balance"}
     assert any("one mode with one cubic sink" in note for note in done.notes)
 
@@ -288,7 +307,7 @@ def test_report_shows_wind_and_gusts():
     kept = analysis_module._concluded(work, False)
     text = render_report(kept, {})
     for said in ("Brown &amp; Root 1985", "counter-example", "Griffin and Skop", "secondary", "Unsteady wind",
-                 "EN 1991-1-4, method 2", "load cycles at resonance", "2.36e+06",
+                 "EN 1991-1-4, method 2", "load cycles at resonance", "2.36e6",
                  "plot-unsteady-wind", "Synthetic turbulence"):  # fmt: skip
         assert said in text, said
     names = [name for name, _ in drawings(kept.results, kept.data)]

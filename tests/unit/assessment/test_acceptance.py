@@ -5,7 +5,7 @@ import math
 import pytest
 
 import frahm
-from frahm.assessment import accepted, utilisations
+from frahm.assessment import accepted, headline, utilisations
 
 WORST = {"pipe_peak": 0.0381, "stress_range": 80e6, "relative_peak": 0.06}
 FATIGUE = {"utilisation_with": 0.4}
@@ -55,14 +55,20 @@ def test_a_limit_that_lacks_data_is_never_passed(limit):
     rows = list(found({limit: "100 MPa", "displacement": "50 mm"}, stress_range=math.nan).values())
     assert accepted(rows, True)["verdict"] == "not verified"
     assert accepted(list(found({limit: "1 MPa"}, stress_range=math.nan).values()), True)["sentence"].startswith(
-        "NOT VERIFIED: the case does not say enough"
+        "NOT VERIFIED: nothing is known that the limits"
     )
 
 
 def test_a_doubt_leaves_no_pass_and_a_case_without_limits_says_so():
     assert accepted(list(found({"stroke": 0.1}).values()), False)["verdict"] == "not verified"
-    assert "section limits" in accepted([], True)["sentence"]
-    assert found({"stroke": 0.1}, worst=None) == {}
+    nothing = accepted([], True)
+    assert nothing["verdict"] == "not verified"  # nothing was judged, so nothing passes
+    assert headline(nothing) == "NOT JUDGED"
+    assert nothing["sentence"].startswith("NOT JUDGED: the case gives no limit")
+    (unknown,) = found({"stroke": 0.1}, worst=None).values()
+    assert math.isnan(unknown.ratio)
+    assert unknown.text == "Stroke not known of 100 mm"
+    assert headline(accepted([unknown], True)) == "NOT VERIFIED"
 
 
 def test_a_bare_pipe_has_no_stroke():

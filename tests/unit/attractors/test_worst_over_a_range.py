@@ -37,8 +37,23 @@ def test_a_window_cut_on_the_flank_is_unverified(window, end):
     worst = frahm.worst_case(BARE, detuning=window)
     assert worst.detuning == pytest.approx(window[0 if end == "lower" else 1])
     assert not worst.verified
-    assert any(f"sits at the {end} end" in doubt for doubt in worst.unverified)
-    assert any("Beyond the range" in doubt for doubt in worst.unverified)
+    (doubt,) = worst.unverified  # one cause, one sentence
+    assert doubt.startswith(f"The worst motion sits at the {end} end of the range")
+    assert "and beyond it, at detuning" in doubt
+    assert doubt.endswith("m is larger.")
+
+
+@pytest.mark.parametrize("absorbers", [[], frahm.load_case("jacket-pipe").to_dict()["absorbers"]], ids=len)
+def test_where_nothing_excites_the_pipe_no_end_of_the_range_is_in_doubt(absorbers):
+    case = frahm.load_case(BARE.to_dict() | {"absorbers": absorbers, "analysis": {}}).with_wind(lift_coefficient=0)
+    worst = frahm.worst_case(case, samples=2)
+    assert (worst.pipe_peak, worst.unverified) == (0, ())
+    assert "nothing excites the pipe" in worst.motion.tier
+
+
+def test_a_motion_larger_beyond_the_range_of_a_nonlinear_pipe_is_told_once():
+    worst = frahm.worst_case("jacket-pipe", detuning=(0.2, 0.4), samples=4)
+    assert len([doubt for doubt in worst.unverified if "beyond" in doubt.lower()]) == 1
 
 
 def test_a_window_that_holds_the_peak_is_verified():

@@ -1,6 +1,7 @@
 """Ranges are kept, rivals are not bound by them, limits hold for every attractor, and the verdict names who won."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,12 +10,14 @@ import frahm
 from frahm.attractors import WorstMotion
 from frahm.case import Scatter
 from frahm.design import DesignSettings, Objective, verified_designs, with_design
+from frahm.design.absorber import DesignedAbsorber
 from frahm.design.disturbance import Disturbance
 from frahm.design.host import host_of
 from frahm.design.problem import Problem
 from frahm.design.settings import settings_for
-from frahm.design.study import Rival
+from frahm.design.study import Rival, first_of, headline
 from frahm.design.verdict import verdict
+from frahm.report.decision import ranking_rows
 
 CASE = frahm.load_case("jacket-pipe")
 OMEGA = CASE.pipe.frequency
@@ -99,6 +102,29 @@ def test_the_verdict_names_the_best_that_is_verified():
     )
     assert "the tuned mass damper has the smallest" in words
     assert "Unverified: the mixture." in words
+
+
+def test_of_devices_as_good_as_each_other_the_simpler_is_named():
+    objective, sink = Objective(), rival("sink", 0.0067)
+    tuned, mixed = rival("tuned mass damper", 0.00209), rival("mixed", 0.002089)
+    assert first_of([sink, mixed, tuned]).name == "tuned mass damper"
+    assert first_of([sink, replace(mixed, value=0.0015), tuned]).name == "mixed"
+    assert first_of([sink, mixed, rival("tuned mass damper", 0.00209, verified=False)]).name == "mixed"
+    said = headline(sink, first_of([sink, mixed, tuned]), objective)
+    assert "the tuned mass damper does better, 2.09 mm" in said
+    same = replace(mixed, design=DesignedAbsorber(rho2=0.02, linear=8.0, kappa=0.0, xi2=0.07))
+    assert headline(same, tuned, objective).startswith(
+        "Best mixed, which is a tuned mass damper without a cubic spring"
+    )
+    both = replace(mixed, design=DesignedAbsorber(rho2=0.02, linear=8.0, kappa=1.0, xi2=0.07))
+    assert headline(both, both, objective).startswith("Best mixed: ")
+    errors = {
+        "error": [0.0, 0.1],
+        "pipe_peak": {"mixed": [0.0020899, 0.003], "tuned mass damper": [0.00209, 0.004]},
+        "verified": {"mixed": [True, True], "tuned mass damper": [True, True]},
+    }
+    ranked = [row[1].split(",")[0] for row in ranking_rows(errors)]
+    assert ranked == ["tuned mass damper 2.09", "linear and cubic 3.00"]
 
 
 def test_a_mixture_in_its_ranges_is_never_a_corner_outside_of_them():

@@ -1,6 +1,7 @@
 """The range of operation against hand computation: the band of a mode, the site, the tables, and what is refused."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy.linalg import eigh
 
 import frahm
 from frahm.loads import excited_bands, operating_range, other_modes, site_winds, split_resonances
+from frahm.plausibility import plausibility
 
 FREQUENCY, DIAMETER, STROUHAL = 3.28, 0.61, 0.2
 RESONANCE = FREQUENCY * DIAMETER / STROUHAL  # U_crit = f D / St = 10.004 m/s
@@ -107,6 +109,49 @@ def test_of_a_site_too_calm_for_the_mode_the_strongest_winds_are_looked_at():
     assert within.wind == pytest.approx((5 / 1.2, 5.0))
     assert any("No wind of the site excites the mode" in sentence for sentence in within.basis)
     assert operating_range(case({"speed": 4, "range": [0, 5]})).wind == (4.0, 5.0)
+
+
+@pytest.mark.parametrize(("site", "speed"), [([15.0, 22.0], 10.0), ([1.0, 3.0], 10.0), ([20.0, 22.0], 14.0)])
+def test_winds_that_the_site_does_not_have_are_looked_at_and_nothing_of_them_is_verified(site, speed):
+    asked = case({"speed": speed, "range": site})
+    within = operating_range(asked)
+    assert within.wind == pytest.approx((min(LOW, speed), max(HIGH, speed)), rel=1e-12)  # the resonance among them
+    (doubt,) = within.doubts
+    assert f"The site has winds of {site[0]:g} ... {site[1]:g} m/s" in doubt
+    assert "correct wind.range" in doubt
+    worst = frahm.worst_case(asked.without_absorbers(), samples=2)
+    assert not worst.verified
+    assert [one.split(":")[0] for one in worst.unverified] == [doubt.split(":")[0]]
+    assert worst.pipe_peak > 0
+
+
+@pytest.mark.parametrize(("site", "speed"), [([5.0, 22.0], 4.0), ([0.0, 5.0], 5.0), ([11.0, 22.0], 30.0)])
+def test_a_site_that_has_the_wind_of_the_case_or_one_that_excites_is_not_in_doubt(site, speed):
+    assert operating_range(case({"speed": speed, "range": site})).doubts == ()
+
+
+@pytest.mark.parametrize(("drop", "words"), [((0.94, 1.05), "only"), ((0.94, 1.3), "not looked at")])
+def test_another_mode_where_the_shedding_falls_with_the_wind_is_looked_at_in_part_or_named(drop, words):
+    mast = frahm.load_case(Path(__file__).parents[2] / "cases" / "table.yaml")
+    ((_, full),) = other_modes(mast)
+    middle = math.sqrt(full.wind[0] * full.wind[1])
+    Re = [share * middle * mast.pipe.diameter / mast.wind.viscosity for share in drop]
+    ratio = drop[0] / drop[1] * 0.95  # falls faster than one over the wind
+    folded = mast.with_wind(strouhal=[[1e2, 0.2], [Re[0], 0.2], [Re[1], 0.2 * ratio], [1e7, 0.2 * ratio]])
+    if words != "only":  # the site has none of the winds below and beyond
+        folded = folded.with_wind(range=(0.96 * middle, 1.28 * middle))
+    beside = other_modes(folded)
+    doubts = [*operating_range(folded).doubts, *(doubt for _, within in beside for doubt in within.doubts)]
+    (doubt,) = (one for one in doubts if "mode 2" in one)
+    assert "excite mode 2, but the shedding frequency falls with the wind" in doubt
+    assert words in doubt
+    assert len(beside) == (words == "only")
+    for _, within in beside:
+        assert within.law.is_monotone(*within.wind)
+        assert float(within.law.frequency(within.wind[0])) < within.law.frequency(within.wind[1])
+    worst = frahm.worst_case(folded, samples=2)
+    assert doubt in worst.unverified
+    assert any(doubt in str(one) for one in plausibility(folded))
 
 
 def test_lift_and_wind_follow_the_frequency():

@@ -9,6 +9,7 @@ import pytest
 import frahm
 from frahm import readable
 from frahm.analysis import analyse, save_analysis
+from frahm.assessment import accepted
 from frahm.plotting.decision import DEVICES
 from frahm.report import decision, render_report
 from frahm.report.document import document_rows
@@ -78,8 +79,9 @@ def test_the_row_without_error_is_the_comparison(failing):
 
 
 def test_a_case_without_limits_is_not_coloured_as_one_that_keeps_them():
-    open_case = {"verdict": "pass", "rows": [], "sentence": "PASS. The case gives no limits."}
-    assert decision.banner(open_case) == ("open", "PASS", "The case gives no limits.")
+    status, word, sentence = decision.banner(accepted([], True))
+    assert (status, word) == ("open", "NOT JUDGED")
+    assert sentence.startswith("The case gives no limit")
     kept = {"verdict": "pass", "rows": [{"ratio": 0.5}], "sentence": "PASS: the limit used most is stroke, 50%."}
     assert decision.banner(kept)[0] == "pass"
 

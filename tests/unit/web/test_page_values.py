@@ -7,10 +7,13 @@ import pytest
 
 import frahm
 from frahm import readable
-from frahm.analysis import analyse
+from frahm.analysis import STEPS, Work, analyse
+from frahm.analysis.largest import FIXED_LIFT
+from frahm.analysis.section import Section
 from frahm.loads import operating_range
 from frahm.web import answers, words
 from frahm.web.controls import controls_of, field_texts, reading, spans
+from frahm.web.deciding import _ONLY_SHOWN
 from frahm.web.drawing import MOST_POINTS, curve_lines
 from frahm.web.jobs import attractors, do, exact_response, first_sink, motion
 from frahm.web.live import manifold_lines, responses_at, slow_curve, stability_map
@@ -302,6 +305,28 @@ def test_the_decision_is_that_of_frahm_run(case):
     assert damped["worst"]["pipe_peak"] == pytest.approx(
         analyse(tuned_case(case)).results["worst_case"]["pipe_peak"], rel=1e-9
     )
+
+
+def test_the_verdict_counts_the_checks_of_every_step():
+    # the winds that shed in the window move this pipe more than the one lift does: only a check of another step says so
+    case = CASE.without_absorbers().with_wind(speed=2.4)
+    case = frahm.load_case(case.to_dict() | {"limits": {"displacement": 1.0}})
+    done = analyse(case)
+    assert [check.name for check in done.checks if check.status != "pass"] == [FIXED_LIFT]
+    this = do("decision", case.to_dict(), {"device": "this"}, silent)
+    assert this["acceptance"]["verdict"] == done.results["acceptance"]["verdict"] == "not verified"
+    assert words.decision_row(case, "this", this)["verdict"] == "NOT VERIFIED"
+
+
+def test_the_verdict_leaves_no_step_out_that_has_checks_or_doubts():
+    done = analyse(CASE.without_absorbers())
+    named = {step.run.__name__ for step in STEPS}
+    assert set(_ONLY_SHOWN) < named
+    work = Work(done.case, Section(results=done.results, data=done.data))
+    for step in STEPS:
+        if step.run.__name__ in _ONLY_SHOWN:
+            section = step.run(work)
+            assert (section.checks, section.unverified) == ((), ())
 
 
 def test_a_pipe_without_damping_has_no_bounded_worst():
