@@ -123,6 +123,10 @@ class Outcome(enum.Enum):
         """Whether the result can be used as it is."""
         return self in (Outcome.DONE, Outcome.WINDOW_LEFT, Outcome.CLOSED)
 
+    def known(self, value: float) -> float:
+        """A number that stands for a whole run: NaN if the run did not reach its end, for it is then of another one."""
+        return value if self.ok else math.nan
+
 
 def nearest(name: str, choices: Iterable[str]) -> str | None:
     """Valid name most like `name`, or None."""
