@@ -1,11 +1,11 @@
 """All Hopf points of the slow flow in a window, by subdivision with exclusion and uniqueness tests.
 
 On the response curve C(u, n) = n |d0 + n s0|^2 - Q = 0 they are zeros of the Hurwitz determinant. Both are polynomials
-of degree at most 4 in n = 3/4 kappa |Z|^2 and in u (u = Omega in the paper's form, Omega^2 in the averaged one). A polynomial lies between its smallest and its largest
-Bernstein coefficient, so a box whose coefficients have one sign holds no zero; a box on which the preconditioned pair
-is injective holds at most one, which a contraction then finds. Every other box is halved. Nothing is read off a grid
-and nothing can be missed; a box that stays undecided at the smallest size is reported as such, and so is a search that
-would need more boxes than `MOST_BOXES`.
+of degree at most 4 in n = 3/4 kappa |Z|^2 and in u (u = Omega in the paper's form, Omega^2 in the averaged one). A
+polynomial lies between its smallest and its largest Bernstein coefficient, so a box whose coefficients have one sign
+holds no zero; a box on which the preconditioned pair is injective holds at most one, which
+a contraction then finds. Every other box is halved. Nothing is read off a grid and nothing can be missed; a box that
+stays undecided at the smallest size is reported as such, and so is a search that would need more than `MOST_BOXES`.
 """
 
 from __future__ import annotations
