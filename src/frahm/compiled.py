@@ -94,7 +94,7 @@ class KeptKernel(NullCache):
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             write_bytes(self._path(key), _sealed(key, dumps(data._reduce())))
-        except (OSError, ParameterError) as error:
+        except (OSError, ParameterError, RuntimeError) as error:  # the last: code whose making was interrupted
             _say(f"Compiled kernels cannot be kept in {_cache_root()}: {getattr(error, 'hint', None) or error}")
 
     def _key(self, sig: Any, codegen: Any) -> bytes:

@@ -18,6 +18,7 @@ from frahm.harmonic_balance.found import Budget
 from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count
 from frahm.harmonic_balance.newton import correct, solve_at
 from frahm.harmonic_balance.orbits import between, describe, same_harmonics
+from frahm.harmonic_balance.quasi_static import searched_window
 from frahm.harmonic_balance.root_counts import polynomial_counts, table_counts
 from frahm.harmonic_balance.seeds import (
     Seed,
@@ -97,6 +98,7 @@ class Search:
     x_scale: float
     w_scale: float
     harmonics: int | None
+    unsearched: tuple[str, ...] = ()
     budget: Budget = field(default_factory=Budget)
 
     @property
@@ -123,6 +125,7 @@ class Search:
 
 def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None) -> Search:
     """Condense the system and set the scales of the search; `forcing` is a factor over Omega, see `forcing_factor`."""
+    lo, hi, unsearched = searched_window(system, lo, hi)
     pb = condense(system, forcing)
     grid = np.linspace(lo, hi, _SEED_FREQUENCIES)
     largest = 0.0
@@ -134,7 +137,7 @@ def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: 
     outer = (max(lo - width, 0.02 * lo), hi + width)
     scale = largest or 1.0
     variation = variation_of(system, *_strongest(pb, scale, hi)) if system.size > 3 else variation_of(system)
-    return Search(system, pb, seeder, variation, lo, hi, outer, scale, width, harmonics)
+    return Search(system, pb, seeder, variation, lo, hi, outer, scale, width, harmonics, unsearched)
 
 
 def _strongest(pb: Problem, scale: float, hi: float) -> tuple[float, float]:
