@@ -293,7 +293,7 @@ def _lasting(
     outcome, fine = outcome_of(code), fine[:taken]
     if not outcome.ok:
         state[:] = _start(system)  # the next speed knows nothing of this one
-        return *([math.nan] * 5), False, outcome
+        return math.nan, math.nan, math.nan, math.nan, math.nan, False, outcome
     x, v, q, rate = fine[:, 0], fine[:, n], fine[:, 2 * n], fine[:, 2 * n + 1]
     relative = math.nan
     if system.elements:
