@@ -79,18 +79,20 @@ def bifurcation_curve(
     limits = _checked_bounds(system, axes, bounds)
     count = check_count("slices", slices, at_most=200)
     along = [axis for axis in axes if axis in _FREQUENCIES]
+    doubts: list[str] = []
     if along:
         parameter = axes[0] if axes[1] in _FREQUENCIES else axes[1]
         lo, hi, unsearched = searched_window(system, *excitation_window(system, **{along[0]: limits[along[0]]}))
         window = (lo, hi)
-        found, _ = loci_with_frequency(system, kind, parameter, window, limits[parameter], count)
+        doubts += unsearched
+        found, _ = loci_with_frequency(system, kind, parameter, window, limits[parameter], count, doubts=doubts)
     else:
         if detuning is None and frequency is None:
             detuning = 0.0
-        W, unsearched = excitation_frequency(system, detuning=detuning, frequency=frequency), ()
-        found = loci_at_frequency(system, kind, axes, (limits[axes[0]], limits[axes[1]]), W, count)
+        W = excitation_frequency(system, detuning=detuning, frequency=frequency)
+        found = loci_at_frequency(system, kind, axes, (limits[axes[0]], limits[axes[1]]), W, count, doubts)
     data = _dataset(system, kind, axes, limits, found, count)
-    return data.assign_attrs(unverified=" ".join(unsearched)) if unsearched else data
+    return data.assign_attrs(unverified=" ".join(doubts)) if doubts else data
 
 
 def detached_curve_events(

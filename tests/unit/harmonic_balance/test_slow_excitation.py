@@ -49,3 +49,15 @@ def test_detached_curves_and_loci_say_what_they_left_out():
     assert "nothing was searched" in found.unverified[0]
     data = frahm.bifurcation_curve(cubic, plane=("frequency", "force"), bounds=((1e-6, 5.0), (0.9, 1.0)), slices=1)
     assert "nothing was searched" in data.attrs["unverified"]
+
+
+def test_slices_that_meet_their_limit_of_work_are_named(monkeypatch):
+    cubic = frahm.load_case("jacket-pipe").with_absorber(kappa=24.0)
+    search = {"frequency": (4.6, 5.0), "slices": 2}
+    assert frahm.detached_curve_events(cubic, "force", (0.9, 1.0), **search).unverified == ()
+    monkeypatch.setattr("frahm.harmonic_balance.found.Budget.reached", property(lambda self: True))
+    found = frahm.detached_curve_events(cubic, "force", (0.9, 1.0), **search)
+    assert [sentence.partition(":")[0] for sentence in found.unverified] == ["At force 0.9", "At force 1"]
+    assert "met its limit of work" in found.unverified[0]
+    data = frahm.bifurcation_curve(cubic, plane=("frequency", "force"), bounds=((4.6, 5.0), (0.9, 1.0)), slices=1)
+    assert "met its limit of work" in data.attrs["unverified"]
