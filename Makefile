@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 
-.PHONY: setup run reproduce test fuzz lint types bench docs scatter-study where-a-sink-wins examples validation clean
+.PHONY: setup run reproduce test bounds fuzz lint types bench docs scatter-study where-a-sink-wins examples validation clean
 
 setup: $(STAMP)
 
@@ -22,6 +22,9 @@ reproduce: setup
 
 test: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal
+
+bounds:
+	$(PYTHON) .ci/bounds
 
 fuzz: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m hypothesis --hypothesis-profile search
@@ -56,4 +59,4 @@ validation: setup
 	cp out/validation.json docs/validation.json
 
 clean:
-	rm -rf $(VENV) out docs/_build docs/_generated .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
+	rm -rf $(VENV) .bounds out docs/_build docs/_generated .mypy_cache .pytest_cache .ruff_cache .import_linter_cache

@@ -44,6 +44,14 @@ def real_array(name: str, values: ArrayLike, allowed: str) -> Floats:
         raise ParameterError(name, values, allowed) from None
 
 
+def eigenvalues(matrix: Floats) -> NDArray[np.complex128]:
+    """Eigenvalues of a matrix; NaN where it has entries that are not finite, or the iteration does not end."""
+    try:
+        return np.linalg.eigvals(matrix).astype(complex)
+    except np.linalg.LinAlgError:
+        return np.full(matrix.shape[:-1], np.nan, complex)
+
+
 def labelled(dims: str | tuple[str, ...], data: ArrayLike, long_name: str, units: str, **more: Any) -> tuple[Any, ...]:
     """One variable of an `xarray.Dataset`: every variable says what it is and in which unit."""
     return dims, np.asarray(data), {"long_name": long_name, "units": units, **more}

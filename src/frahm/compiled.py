@@ -8,15 +8,18 @@ user's alone, and every file begins with the hash of what follows.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import logging
 import os
 import pickle
 import re
+import shutil
 import stat
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -33,6 +36,8 @@ from frahm.files import write_bytes
 # says "there is no such root".
 _FLAGS = {"contract", "nsz", "arcp"}
 _IMPORT = re.compile(r"^\s*from (frahm[\w.]*) import (?:\(([^)]*)\)|([^(\n]+))|^\s*import (frahm[\w.]*)", re.MULTILINE)
+_UNUSED = 30 * 86_400.0  # [s] after which compiled code of other sources is removed
+_FOLDER = re.compile(r"[0-9a-f]{16}(\.gone-\d+)?")
 _ROOT = Path(__file__).resolve().parent
 
 
@@ -79,6 +84,7 @@ class KeptKernel(NullCache):
             content = _own_content(self._path(key))
             if content is None:
                 return None
+            _mark_used(self._folder)
             return CompileResult._rebuild(target_context, *pickle.loads(_unsealed(key, content)))
         except FileNotFoundError:
             return None
@@ -94,7 +100,9 @@ class KeptKernel(NullCache):
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             write_bytes(self._path(key), _sealed(key, dumps(data._reduce())))
-        except (OSError, ParameterError) as error:
+            _mark_used(self._folder)
+            _remove_unused(self._folder.parent)
+        except (OSError, ParameterError, RuntimeError) as error:  # the last: code whose making was interrupted
             _say(f"Compiled kernels cannot be kept in {_cache_root()}: {getattr(error, 'hint', None) or error}")
 
     def _key(self, sig: Any, codegen: Any) -> bytes:
@@ -166,6 +174,31 @@ def _made_private(folder: Path) -> bool:
 def _is_own(found: os.stat_result) -> bool:
     """Whether it is of this user; on Windows the user's folders are closed to others by the system."""
     return not hasattr(os, "geteuid") or found.st_uid == os.geteuid()
+
+
+@functools.cache
+def _mark_used(folder: Path) -> None:
+    """Let a folder bear the time of its last use, once a process; where that cannot be, it is removed sooner."""
+    with contextlib.suppress(OSError):
+        os.utime(folder)
+
+
+@functools.cache
+def _remove_unused(root: Path) -> None:
+    """Remove what was compiled from other sources and not used for a month, once a process that compiles.
+
+    A folder is renamed before it is emptied, so that no process finds half of it; one that still reads from it goes on.
+    """
+    with contextlib.suppress(OSError):
+        for folder in list(root.iterdir()):
+            with contextlib.suppress(OSError):
+                found = folder.lstat()
+                old = time.time() - found.st_mtime > _UNUSED
+                if not (_FOLDER.fullmatch(folder.name) and stat.S_ISDIR(found.st_mode) and _is_own(found) and old):
+                    continue
+                gone = folder if ".gone-" in folder.name else folder.with_name(f"{folder.name}.gone-{os.getpid()}")
+                folder.rename(gone)
+                shutil.rmtree(gone, ignore_errors=True)
 
 
 @functools.cache

@@ -6,6 +6,7 @@ import contextlib
 import difflib
 import enum
 import math
+import pickle
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
@@ -72,6 +73,26 @@ class ParameterError(ValueError):
         message = f"{message}. {part['hint']}" if hint else message
         super().__init__("\n".join([message, *map(printable, self.also)]))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What crosses to another process or into a copy: the message as it is, and the value if it can be pickled."""
+        return _remade, (type(self), self.args, vars(self) | {"value": _portable(self.value)})
+
+
+def _remade(kind: type[ParameterError], args: tuple[Any, ...], facts: dict[str, Any]) -> ParameterError:
+    error = kind.__new__(kind, *args)
+    error.args = args
+    vars(error).update(facts)
+    return error
+
+
+def _portable(value: Any) -> Any:
+    """A value, or the text it is shown as if it cannot be pickled."""
+    try:
+        pickle.dumps(value)
+    except Exception:  # of any object
+        return shown(value)
+    return value
+
 
 @contextlib.contextmanager
 def door(name: str, value: Any, allowed: str, hint: str | None = None) -> Iterator[None]:
@@ -122,6 +143,10 @@ class Outcome(enum.Enum):
     def ok(self) -> bool:
         """Whether the result can be used as it is."""
         return self in (Outcome.DONE, Outcome.WINDOW_LEFT, Outcome.CLOSED)
+
+    def known(self, value: float) -> float:
+        """A number that stands for a whole run: NaN if the run did not reach its end, for it is then of another one."""
+        return value if self.ok else math.nan
 
 
 def nearest(name: str, choices: Iterable[str]) -> str | None:

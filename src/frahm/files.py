@@ -7,6 +7,9 @@ import json
 import os
 import secrets
 import stat
+import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,7 @@ from frahm.errors import ParameterError, nearest
 
 _LARGEST_TEXT = 500_000_000  # bytes
 _MOST_NEIGHBOURS = 2000
+_PAUSES = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)  # [s]
 
 
 def existing_file(path: str | os.PathLike[str], allowed: str = "a file that exists", *, largest: int) -> Path:
@@ -124,7 +128,7 @@ def write_bytes(path: str | Path, content: bytes | memoryview) -> None:
     try:
         with beside.open("xb") as stream:
             stream.write(content)
-        beside.replace(target)
+        put_in_place(beside, target)
     except BaseException as error:
         with contextlib.suppress(OSError, ValueError):
             beside.unlink(missing_ok=True)
@@ -132,6 +136,27 @@ def write_bytes(path: str | Path, content: bytes | memoryview) -> None:
             raise
         reason = getattr(error, "strerror", None) or str(error)
         raise ParameterError("file", str(path), _ALLOWED, hint=f"{reason}.") from None
+
+
+def put_in_place(source: Path, target: Path) -> None:
+    """Move a file or a folder to where it belongs; a file that stands there is replaced in one step."""
+    patiently(lambda: source.replace(target))
+
+
+def patiently(replacement: Callable[[], object]) -> None:
+    """Do what replaces a file.
+
+    Windows refuses while somebody has the file open, such as a search for viruses or a reader: a little patience helps
+    there.
+    """
+    for pause in _PAUSES if sys.platform == "win32" else ():
+        try:
+            replacement()
+        except PermissionError:
+            time.sleep(pause)
+        else:
+            return
+    replacement()
 
 
 def write_text(path: str | Path, text: str) -> None:

@@ -173,3 +173,13 @@ def test_an_interrupted_worst_case_is_not_verified(monkeypatch):
     assert not worst.verified
     assert len(worst.surveys) == 3
     assert worst.pipe_peak > 0
+
+
+@pytest.mark.filterwarnings("error")
+def test_the_worst_of_motions_none_of_which_has_a_peak_warns_of_nothing(monkeypatch):
+    monkeypatch.setattr("frahm.attractors.stroboscope._LEAST_STEPS", 1.0)
+    monkeypatch.setattr("frahm.attractors.stroboscope._STEPS_PER_PERIOD", 0.0)
+    monkeypatch.setattr("frahm.attractors.worst.responses_on", lambda *_: [])
+    found = frahm.worst_case(CASE, detuning=(-0.3, -0.299), samples=2, periods=100)
+    assert np.isnan(found.not_excluded)
+    assert not found.verified

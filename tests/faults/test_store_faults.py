@@ -349,7 +349,7 @@ def test_a_disk_that_fails_is_not_the_failure_of_a_point(tmp_path, monkeypatch):
 @pytest.mark.parametrize("when", ["laid out", "gave way"])
 def test_what_a_killed_creator_left_is_removed_and_nothing_is_lost(whole, damaged, monkeypatch, when):
     """Killed while it laid the new store out, or between the two renamings that replace an old one."""
-    lay, rename = store.lay_out, Path.rename
+    lay, move = store.lay_out, store.put_in_place
 
     def killed(function, *given):
         function(*given)
@@ -360,7 +360,7 @@ def test_what_a_killed_creator_left_is_removed_and_nothing_is_lost(whole, damage
         if when == "laid out":
             patch.setattr(store, "lay_out", lambda *given: killed(lay, *given))
         else:
-            patch.setattr(Path, "rename", lambda *given: killed(rename, *given))
+            patch.setattr(store, "put_in_place", lambda *given: killed(move, *given))
         with pytest.raises(KeyboardInterrupt):
             frahm.sweep(OTHER, store=damaged, force=True)
     assert damaged.exists() == (when == "laid out")

@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 import frahm
 from frahm.cli import app
 from frahm.files import write_text
+from frahm.sweep import summary_of
 
 GOOD = """\
 name: good
@@ -266,3 +267,26 @@ def test_what_is_no_executor_is_refused(tmp_path):
     with pytest.raises(frahm.ParameterError, match="executor: given 4; allowed: a concurrent"):
         frahm.sweep({"case": "jacket-pipe", "axes": {"kappa": [1]}, "quantities": {"slow_flow": {}}},
                     store=tmp_path / "s", executor=4)  # fmt: skip
+
+
+@pytest.mark.parametrize("error", [MemoryError("no room"), OSError("disk"), KeyboardInterrupt()])
+@pytest.mark.parametrize("closed_form", [True, False])
+def test_what_the_machine_lacks_is_no_failure_of_a_point(folder, monkeypatch, error, closed_form):
+    write_text(folder / "good.yaml", GOOD if closed_form else GOOD.replace("slow_flow:", "response:"))
+    study = frahm.load_study(folder / "good.yaml")
+
+    def fail(*_, **__):
+        raise error
+
+    name = "_map" if closed_form else "periodic_responses"
+    with monkeypatch.context() as short:
+        short.setattr(f"frahm.sweep.quantities.{name}", fail)
+        if isinstance(error, KeyboardInterrupt):
+            with pytest.raises(KeyboardInterrupt):
+                frahm.sweep(study, store=folder / "store")
+        else:
+            with pytest.warns(frahm.SweepWarning, match="points could not be computed"):
+                frahm.sweep(study, store=folder / "store")
+    assert summary_of(folder / "store").pending == 6
+    frahm.sweep(study, store=folder / "store", resume=True)
+    assert summary_of(folder / "store").pending == 0

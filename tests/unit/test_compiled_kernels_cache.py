@@ -4,6 +4,7 @@ import ast
 import os
 import stat
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
@@ -167,3 +168,35 @@ def test_the_shared_folder_for_temporary_files_is_no_place(monkeypatch):
     for name in ("NUMBA_CACHE_DIR", "LOCALAPPDATA", "XDG_CACHE_HOME"):
         monkeypatch.delenv(name, raising=False)
     assert Path(tempfile.gettempdir()) not in set(compiled._places())
+
+
+def test_what_other_sources_left_is_removed_after_a_month_and_nothing_else(kept):
+    value, root = kept
+    (own,) = root.iterdir()
+    old, recent, foreign, left = (root / name for name in ("0" * 16, "1" * 16, "notes", "2" * 16 + ".gone-7"))
+    for folder in (old, recent, foreign, left):
+        folder.mkdir()
+        (folder / "a.kernel").write_bytes(b"code")
+    month = time.time() - 31 * 86_400
+    for folder in (old, foreign, left, own):
+        os.utime(folder, (month, month))
+    compiled._mark_used.cache_clear()
+    compiled._remove_unused.cache_clear()
+    assert value() == 1  # what is loaded is in use
+    assert own.stat().st_mtime > month + 1
+    assert old.exists()
+    assert value(np.float32(3.0)) == 0  # what is compiled makes room
+    assert {folder.name for folder in root.iterdir()} == {own.name, recent.name, foreign.name}
+
+
+def test_a_folder_another_process_removes_meanwhile_is_no_failure(kept, monkeypatch, caplog):
+    value, root = kept
+    old = root / ("0" * 16)
+    old.mkdir()
+    os.utime(old, (0, 0))
+    monkeypatch.setattr(Path, "rename", lambda self, target: (_ for _ in ()).throw(PermissionError("in use")))
+    compiled._remove_unused.cache_clear()
+    compiled._remove_unused(root)
+    assert old.exists()
+    assert not caplog.records
+    assert value() == 1

@@ -45,30 +45,34 @@ Progress = Callable[[str, int, int], None]
 
 @dataclass(frozen=True)
 class Step:
-    """One step of the analysis: what it is called for people, and the function that does it."""
+    """One step of the analysis: what it is called for people, the function that does it, and its share of the work.
+
+    The share is roughly that of a case with a cubic sink; the time a run takes is judged by it.
+    """
 
     title: str
     run: Callable[[Work], Section]
+    weight: float = 0.1
 
 
 # In this order; a step reads what the steps before it found. A further analysis is one more line here.
 STEPS = (
     Step("pipe without absorbers", without_absorber),
-    Step("exact response by harmonic balance", exact_response),
+    Step("exact response by harmonic balance", exact_response, 1.0),
     Step("modes of the pipe", modes),
     Step("slow flow", slow_flow_response),
     Step("similarity numbers and onset criteria", wind),
     Step("response over the wind speed", over_wind),
-    Step("motion in unsteady wind", gusts),
-    Step("births and merges of detached curves", detached_curve_margin),
+    Step("motion in unsteady wind", gusts, 0.5),
+    Step("births and merges of detached curves", detached_curve_margin, 3.0),
     Step("slow manifold", manifold),
-    Step("modulated responses of the slow flow", modulated),
-    Step("motions of the exact equations", motions),
-    Step("slow flow against harmonic balance against integration", cross_check),
+    Step("modulated responses of the slow flow", modulated, 6.0),
+    Step("motions of the exact equations", motions, 0.5),
+    Step("slow flow against harmonic balance against integration", cross_check, 0.5),
     Step("attractors at the design wind", attractors),
-    Step("worst case over the range of operation", worst),
-    Step("basins where several motions last", basins),
-    Step("fatigue over the wind climate", fatigue),
+    Step("worst case over the range of operation", worst, 16.0),
+    Step("basins where several motions last", basins, 2.0),
+    Step("fatigue over the wind climate", fatigue, 30.0),
     Step("largest motion", largest_motion),
     Step("lock-in", lock_in),
     Step("acceptance", acceptance),
@@ -135,6 +139,15 @@ class Analysis:
             "checks": [{"name": c.name, "status": c.status, "detail": c.detail} for c in self.checks],
             "unverified": list(self.unverified),
         }
+
+
+def step_weights(case: Case) -> list[float]:
+    """Share of every step in the work on a case; steps that have nothing to do there have next to none."""
+    idle: list[Callable[[Work], Section]] = []
+    idle += [] if case.absorbers else [detached_curve_margin, modulated, worst, basins]
+    idle += [] if case.fatigue else [fatigue]
+    idle += [] if case.wind.record or case.wind.turbulence else [gusts]
+    return [0.01 if step.run in idle else step.weight for step in STEPS]
 
 
 def analyse(case: Any, *, progress: Progress | None = None) -> Analysis:

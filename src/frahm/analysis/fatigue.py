@@ -6,7 +6,7 @@ import dataclasses
 
 import numpy as np
 
-from frahm.analysis.section import FAIL, PASS, Check, Section, Work
+from frahm.analysis.section import FAIL, PASS, UNVERIFIED, Check, Section, Work
 from frahm.assessment import (
     FatigueDamage,
     damage_of_modes,
@@ -23,6 +23,7 @@ from frahm.systems import build_system
 from frahm.time_integration import integrate
 
 _PERIODS, _PER_PERIOD = 40, 32
+_COUNTED = "Counted cycles of a constant amplitude give the closed-form damage"
 _AGREES = 1e-3  # damage grows with up to the fifth power of a stress integrated to 1e-7
 
 
@@ -99,6 +100,8 @@ def _closed_form(found: FatigueDamage) -> tuple[Check, ...]:
     history = integrate(
         system, frequency=W, periods=_PERIODS, initial_state=state, samples_per_period=_PER_PERIOD, tolerance=1e-9
     )
+    if not history.outcome.ok:
+        return (Check(_COUNTED, UNVERIFIED, f"Without absorbers at {speed:.4g} m/s: {history.outcome.value}"),)
     points = turning_points(history.x @ at.row, history.v @ at.row, float(history.time[1]))[1:-1]
     whole = points[: points.size - (points.size + 1) % 2]  # from an extreme to one of the same side: whole cycles
     counted = rainflow_cycles(whole).damage(at.curve, at.factor)
@@ -110,5 +113,4 @@ def _closed_form(found: FatigueDamage) -> tuple[Check, ...]:
         f"Without absorbers at {speed:.4g} m/s: {cycles:g} cycles, integrated and rainflow counted, differ in"
         f" damage by {error:.1e} from the closed form."
     )
-    name = "Counted cycles of a constant amplitude give the closed-form damage"
-    return (Check(name, PASS if right and error <= _AGREES else FAIL, detail),)
+    return (Check(_COUNTED, PASS if right and error <= _AGREES else FAIL, detail),)

@@ -29,7 +29,7 @@ def _results(found: UnsteadyResponse) -> dict[str, object]:
     with_them, without = found.reduction_by_gusts
     return {
         "record": found.record.source,
-        "duration": found.history.time.size * float(found.history.time[1]),
+        "duration": found.duration,
         "mean_speed": found.record.mean_speed,
         "intensity": found.record.intensity,
         "pipe_peak": found.history.pipe_peak,

@@ -38,8 +38,9 @@ def detached_curve_margin(work: Work) -> Section:
     if work.range.over_wind:
         return _over_the_winds(work, curve, exists)
     end = time.monotonic() + _MOST_SECONDS
-    above, highest = _searched(work, UPWARD, end)
-    below, lowest = _searched(work, DOWNWARD, end) if exists else ([], 1.0)
+    doubts: list[str] = []
+    above, highest = _searched(work, UPWARD, end, doubts)
+    below, lowest = _searched(work, DOWNWARD, end, doubts) if exists else ([], 1.0)
     ahead = min(above, key=lambda event: event.value, default=None)
     born = max((e for e in below if e.direction > 0), key=lambda event: event.value, default=None)
     found: dict[str, Any] = {
@@ -53,6 +54,7 @@ def detached_curve_margin(work: Work) -> Section:
     note = f"The search for births and merges of detached curves took long: it ended at {highest:g} times the force."
     return Section(
         results={"response": {"harmonic-balance": curve | {"detached_curve_margin": found}}},
+        unverified=tuple(dict.fromkeys(f"Births and merges of detached curves: {doubt}" for doubt in doubts)),
         notes=(note,) if late else (),
     )
 
@@ -103,7 +105,9 @@ def _curve(work: Work, force: float) -> ResponseCurve:
     return exact_curve(driven, *work.range.frequency, None, work.range.factor)
 
 
-def _searched(work: Work, edges: tuple[float, ...], end: float) -> tuple[list[DetachedCurveEvent], float]:
+def _searched(
+    work: Work, edges: tuple[float, ...], end: float, doubts: list[str]
+) -> tuple[list[DetachedCurveEvent], float]:
     """Events in the first stretch of force factors that has any, and the factor up to which was searched."""
     reached = edges[0]
     for near, far in pairwise(edges):
@@ -111,6 +115,7 @@ def _searched(work: Work, edges: tuple[float, ...], end: float) -> tuple[list[De
             return [], reached
         bounds, window = (min(near, far), max(near, far)), work.range.detuning
         events = detached_curve_events(work.system, "force", bounds, detuning=window, slices=_SLICES)
+        doubts += events.unverified
         reached = far
         if events:
             return events, reached

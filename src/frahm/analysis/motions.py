@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from frahm.analysis.ranges import growth_rates_at
 from frahm.analysis.section import FAIL, PASS, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import KINDS, envelope_of, judge
 from frahm.arrays import Floats, labelled
+from frahm.errors import Outcome
 from frahm.harmonic_balance import is_linear
 from frahm.systems import System
 from frahm.time_integration import TimeHistory, integrate, integrate_batch
@@ -102,14 +104,17 @@ def _motion(work: Work, point: PointOfInterest) -> Motion:
 
 
 def _followed(system: System, detuning: float, periods: int) -> tuple[TimeHistory, float]:
-    """The run from rest; of a very long one the end only, and the time it begins at [s]."""
-    skipped = max(0, periods - _MOST_KEPT)
-    state = None
+    """The run from rest; of a very long one the end only, and the time it begins at [s]; the start if it failed."""
+    skipped, state, lead = max(0, periods - _MOST_KEPT), None, Outcome.DONE
     if skipped:
-        state = integrate_batch(system, detuning=detuning, periods=skipped, window=0).final_states[0]
+        batch = integrate_batch(system, detuning=detuning, periods=skipped, window=0)
+        lead = batch.outcomes[0]
+        state = batch.final_states[0] if lead.ok else None
     history = integrate(
         system, detuning=detuning, periods=periods - skipped, initial_state=state, samples_per_period=SAMPLES_PER_PERIOD
     )
+    if not lead.ok:
+        return dataclasses.replace(history, outcome=lead), 0.0
     return history, 2 * np.pi / history.frequency * skipped
 
 
@@ -134,10 +139,11 @@ def _summary(motion: Motion) -> dict[str, Any]:
 
 
 def _peak_range(motion: Motion) -> tuple[float, float]:
-    """Smallest and largest peak |x1| of a period within the tail [m]."""
+    """Smallest and largest peak |x1| of a period within the tail [m]; NaN if the run failed."""
     low, high = envelope_of(motion.tail.pipe, SAMPLES_PER_PERIOD)
     peaks = np.maximum(high, -low)
-    return (float(peaks.min()), float(peaks.max())) if peaks.size else (math.nan, math.nan)
+    known = peaks.size > 0 and motion.history.outcome.ok
+    return (float(peaks.min()), float(peaks.max())) if known else (math.nan, math.nan)
 
 
 def _finished(found: list[Motion]) -> Check:

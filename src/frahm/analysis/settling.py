@@ -36,14 +36,16 @@ def section_spread(history: TimeHistory) -> float:
 
 
 def judge(history: TimeHistory) -> tuple[str, float]:
-    """Kind of the motion, and the spread of its Poincare section over the last eighth of the history.
+    """Kind of the motion, and the spread of its Poincare section over the last eighth of the history; NaN if it failed.
 
     Periodic: that spread is below 1e-3. Modulated: it is larger, and over the last quarter as large as over the second
     one (within 30 %), between which a transient decays. Anything else, or less than 80 periods, is unsettled.
     """
+    if not history.outcome.ok:
+        return "unsettled", float("nan")
     periods = (history.time.size - 1) // history.samples_per_period
     last = section_spread(_part(history, 7 * periods // 8, periods))
-    if not history.outcome.ok or periods < _SHORTEST:
+    if periods < _SHORTEST:
         return "unsettled", last
     if last < PERIODIC_BELOW:
         return "periodic", last

@@ -115,12 +115,17 @@ def stress_points(history: TimeHistory, detail: Detail) -> Floats:
 
 
 def largest_place(system: System, attractor: Attractor, sections: Floats, rows: Floats) -> tuple[float, Floats]:
-    """Section and stress at every section of the pipe: where the range is largest, and the ranges [Pa], shape (s,)."""
+    """Section where the stress range is largest, and the range at every section of the pipe [Pa], shape (s,).
+
+    NaN if the motion cannot be integrated.
+    """
     periods = max(attractor.period_multiple, 1) if attractor.kind == "periodic" else _CHUNK
     history = integrate(
         system, frequency=attractor.frequency, periods=periods, initial_state=attractor.representative_state,
         samples_per_period=_COARSE,
     )  # fmt: skip
+    if not history.outcome.ok:
+        return float("nan"), np.full(sections.shape, np.nan)
     stresses = history.x @ rows.T
     ranges = np.ptp(stresses, axis=0)
     return float(sections[np.argmax(ranges)]), np.asarray(ranges)

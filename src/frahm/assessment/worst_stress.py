@@ -55,16 +55,20 @@ def _linear(system: System, worst: WorstCase, sections: Floats, rows: Floats) ->
 
 
 def _of_attractors(system: System, worst: WorstCase, sections: Floats, rows: Floats) -> tuple[float, float, float]:
-    at, best = driven_at(system, worst.range), (0.0, math.nan, math.nan)
+    at, best = driven_at(system, worst.range), (math.nan, math.nan, math.nan)
     for survey in worst.surveys:
         driven = at(survey.frequency)
         for attractor in survey:
             if attractor.outcome is Outcome.DIVERGED:
                 return math.inf, survey.frequency, math.nan
-            if attractor.basin_fraction < worst.min_basin or attractor.outcome in _FAILED:
+            if attractor.basin_fraction < worst.min_basin:
                 continue
+            if attractor.outcome in _FAILED:
+                return math.nan, survey.frequency, math.nan
             section, ranges = largest_place(driven, attractor, sections, rows)
-            if float(ranges.max()) > best[0]:
+            if math.isnan(ranges.max()):
+                return math.nan, survey.frequency, math.nan
+            if not float(ranges.max()) <= best[0]:
                 best = float(ranges.max()), survey.frequency, section
     return best
 

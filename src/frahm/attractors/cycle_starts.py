@@ -43,6 +43,8 @@ def starts_at_hopf(slow: SlowFlow, scales: Scales, point: LocatedPoint) -> list[
     """Small cycles beside a Hopf point, to be followed away from it, the largest first."""
     u, W = hopf_state(slow, point), point.frequency
     J = slow_jacobian(slow.code, *slow.host, slow.kappa, W, complex(u[2], u[3]))
+    if not np.all(np.isfinite(J)):
+        return []
     values, vectors = np.linalg.eig(J)
     pairs = np.flatnonzero(values.imag > 0)
     if not pairs.size:

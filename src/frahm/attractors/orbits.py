@@ -15,7 +15,7 @@ import numpy as np
 import scipy.linalg
 from scipy.stats import norm, qmc
 
-from frahm.arrays import Complexes, Floats, frozen
+from frahm.arrays import Complexes, Floats, eigenvalues, frozen
 from frahm.attractors.stroboscope import Stroboscope
 from frahm.systems import System
 from frahm.time_integration import integrate
@@ -107,9 +107,15 @@ def _product(steps: Floats) -> Floats:
 
 
 def points_needed(system: System, span: float, reach: Floats) -> int:
-    """How many displacements per `span` [s] resolve the linearised motion about displacements up to `reach` (n,)."""
+    """How many displacements per `span` [s] resolve the linearised motion about displacements up to `reach` (n,).
+
+    More than are ever taken where the motion is too fast to resolve.
+    """
     grid = np.linspace(-1.0, 1.0, 21)[:, None] * np.abs(reach)
-    fastest = float(np.max(np.abs(np.linalg.eigvals(_slopes(system, grid, np.zeros_like(grid))))))
+    with np.errstate(over="ignore", invalid="ignore"):
+        fastest = float(np.max(np.abs(eigenvalues(_slopes(system, grid, np.zeros_like(grid))))))
+    if not span * fastest / _LARGEST_TURN < _MOST_POINTS:  # nor where a slope is no number
+        return 2 * _MOST_POINTS + 1
     return 2 * max(_STEPS, int(np.ceil(span * fastest / _LARGEST_TURN))) + 1
 
 
@@ -125,14 +131,15 @@ def orbit_at(strobe: Stroboscope, state: Floats, multiple: int = 1) -> Orbit | N
         return None
     size = orbit_size(strobe, centres)
     balls = tuple(_ball(strobe, centre, Phi, size, multiple) for centre, Phi in zip(centres, maps, strict=True))
-    multipliers = np.linalg.eigvals(maps[0]).astype(complex)
+    multipliers = eigenvalues(maps[0])
     multipliers = multipliers[np.argsort(-np.abs(multipliers))]
     return Orbit(frozen(centres), balls, frozen(multipliers, complex))
 
 
 def spectral_radius(Phi: Floats) -> float:
-    """Largest modulus of the eigenvalues; infinite where the matrix is."""
-    return float(np.max(np.abs(np.linalg.eigvals(Phi)))) if np.all(np.isfinite(Phi)) else np.inf
+    """Largest modulus of the eigenvalues; infinite where the matrix is, or they cannot be found."""
+    largest = float(np.max(np.abs(eigenvalues(Phi))))
+    return np.inf if np.isnan(largest) else largest
 
 
 def _shortest(strobe: Stroboscope, states: Floats) -> int:
@@ -251,8 +258,12 @@ def _ball(strobe: Stroboscope, centre: Floats, Phi: Floats, size: Floats, multip
     limit = 1 - _MARGIN * (1 - rho**turns)
     # what linear theory alone may claim: the adapted norm may be next to blind in some direction
     least = Ball(frozen(centre), frozen(np.diag(1 / size)), _SMALLEST, verified=False)
-    root = _adapted_root(Phi * size / size[:, None], rho)
-    if not np.linalg.cond(root) < _BLIND:
+    try:
+        root = _adapted_root(Phi * size / size[:, None], rho)
+        clear = np.linalg.cond(root) < _BLIND
+    except np.linalg.LinAlgError:  # multipliers so far apart that the norm they ask for is none
+        return least
+    if not clear:
         return least
     to_states = np.linalg.inv(root) * size[:, None]
     root = root / size

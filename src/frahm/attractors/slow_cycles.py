@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frahm.arrays import Floats
+from frahm.arrays import Floats, eigenvalues
 from frahm.attractors.slow_arcs import MOST_STEPS, envelope, shoot
 from frahm.attractors.slow_arcs import arc as slow_arc
 from frahm.slow_flow import SlowFlow
@@ -165,7 +165,7 @@ class Shooting:
         scaled = np.linalg.norm(np.diff(states, axis=0) / self.scales.state, axis=1)
         slowest = float(np.min(scaled / np.diff(times)) / (np.sum(scaled) / times[-1]))
         return SlowCycle(
-            frequency=W, period=float(times[-1]), nodes=nodes, durations=durations, multipliers=np.linalg.eigvals(B),
+            frequency=W, period=float(times[-1]), nodes=nodes, durations=durations, multipliers=eigenvalues(B),
             trivial_error=abs(trivial - 1), pipe=(float(sizes[0]), float(sizes[1])),
             relative=(float(sizes[2]), float(sizes[3])), slowest=slowest,
         )  # fmt: skip
@@ -219,7 +219,7 @@ class Shooting:
         nodes, _, W = self.unpack(y)
         _, maps, _ = self._arcs(y)
         _, B = _deflated(maps, self.velocity(nodes[0], W), self.scales.state)
-        return multiplier_tests(np.linalg.eigvals(B))
+        return multiplier_tests(eigenvalues(B))
 
 
 def even_durations(times: Floats, count: int) -> Floats:

@@ -19,6 +19,7 @@ from frahm.attractors.worst_motion import WorstMotion, joined
 from frahm.case import load_case
 from frahm.errors import Outcome, ParameterError, check_count, check_number
 from frahm.harmonic_balance import PeriodicResponse, is_linear, responses_on
+from frahm.harmonic_balance.quasi_static import searched_window
 from frahm.loads import OperatingRange, frequency_range, operating_range, other_modes
 from frahm.response import ResponseCurve
 from frahm.response.exact import curve_and_branches
@@ -238,7 +239,7 @@ def worst_over(
     at = driven_at(system, wide)
     surveys: dict[float, AttractorSet] = {}
     sizes = (_pipe, _relative, _rms) if rms else (_pipe, _relative)
-    lo, hi = within.frequency
+    lo, hi, _ = searched_window(system, *within.frequency)  # the sentence stands among those of the curve
     if is_linear(system) or not np.any(system.forcing):
         return _concluded(system, within, wide, curve, linear_motions(system, curve, within), min_basin, (), ())
     box = region or _region_of(system, curve, lo, hi)
@@ -398,7 +399,7 @@ def _concluded(
         motion=motion,
         attractor=worst,
         range=within,
-        not_excluded=float(np.nanmax([*possible, worst.pipe_peak])),
+        not_excluded=float(np.fmax.reduce([*possible, worst.pipe_peak])),
         surveys=tuple(surveys[at] for at in sorted(surveys)),
         min_basin=min_basin,
         curve=curve,

@@ -79,11 +79,12 @@ def design(
         with held_interrupts():
             import xarray  # noqa: F401 - imported here, where nothing can stop it half-way
 
-            from frahm.design import check_design, design_absorber, save_design
+            from frahm.design import check_design, design_absorber, save_design, step_weights
             from frahm.report import write_design_report
 
         check_design(loaded, masses or mass_ratio, **asked)  # before anything is written
         claim_folder(folder, loaded, force=force)
+        progress.weigh(step_weights(loaded, masses or mass_ratio, **asked))
         study = design_absorber(loaded, masses or mass_ratio, progress=progress, **asked)
         save_design(study, folder)
         write_design_report(study, folder)

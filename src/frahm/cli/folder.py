@@ -19,9 +19,15 @@ _OWN_FIGURES = (
 )  # fmt: skip
 
 
+# What Windows takes for a device, with any ending.
+_DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(10))}
+
+
 def default_folder(case: Case) -> Path:
     """Folder out/<name of the case>, with nothing in the name a file system could mind."""
     name = re.sub(r"[^\w.-]+", "-", case.name).strip(".-")
+    if name.split(".")[0].lower() in _DEVICES:
+        name = f"case-{name}"
     return Path("out") / (name or "case")
 
 

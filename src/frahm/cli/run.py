@@ -38,9 +38,10 @@ def run(
         with held_interrupts():
             import xarray  # noqa: F401 - the steps need it: imported here, where nothing can stop it half-way
 
-            from frahm.analysis import analyse, save_analysis
+            from frahm.analysis import analyse, save_analysis, step_weights
             from frahm.report import write_report
 
+        progress.weigh(step_weights(loaded))
         analysis = analyse(loaded, progress=progress)
         save_analysis(analysis, folder)
         if not analysis.interrupted:

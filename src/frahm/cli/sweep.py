@@ -43,6 +43,7 @@ def sweep(
             from frahm.sweep import sweep as compute
         loaded = load_study(study)
         say_notes(loaded.case)
+        progress.weigh(())
         try:
             with warnings.catch_warnings(record=True) as caught, _workers(scheduler, processes) as executor:
                 warnings.simplefilter("always", SweepWarning)

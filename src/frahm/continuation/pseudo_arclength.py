@@ -51,17 +51,24 @@ class CurvePoint:
 
 
 def newton(residual: Residual, y: Floats, normal: Floats, tolerance: float, iterations: int = 10) -> CurvePoint | None:
-    """Correct y onto the curve inside the hyperplane through it across `normal`; None if Newton's method fails."""
+    """Correct y onto the curve inside the hyperplane through it across `normal`; None if Newton's method fails.
+
+    It fails, too, where the residual or a step meets a matrix that cannot be solved with or decomposed.
+    """
+    try:
+        return _newton(residual, y, normal, tolerance, iterations)
+    except np.linalg.LinAlgError:
+        return None
+
+
+def _newton(residual: Residual, y: Floats, normal: Floats, tolerance: float, iterations: int) -> CurvePoint | None:
     y, start = y.copy(), y
     for _ in range(iterations):
         R, J = residual(y)
         A, b = np.vstack([J, normal]), np.append(R, normal @ (y - start))
         if not (np.all(np.isfinite(A)) and np.all(np.isfinite(b))):
             return None
-        try:
-            step = np.linalg.solve(A, b)
-        except np.linalg.LinAlgError:
-            return None
+        step = np.linalg.solve(A, b)
         y = y - step
         size = float(np.linalg.norm(step))
         if size > 1e3:
@@ -70,7 +77,8 @@ def newton(residual: Residual, y: Floats, normal: Floats, tolerance: float, iter
             right = np.zeros(y.size)
             right[-1] = 1.0
             tangent = np.linalg.solve(A, right)
-            return CurvePoint(y, tangent / np.linalg.norm(tangent))
+            size = float(np.linalg.norm(tangent))
+            return CurvePoint(y, np.asarray(tangent / size)) if np.isfinite(size) and size > 0 else None
     return None
 
 

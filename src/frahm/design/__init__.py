@@ -2,6 +2,7 @@
 
 from frahm.design.absorber import DesignedAbsorber, parameters_text, with_design
 from frahm.design.designing import check_design, design_absorber, verified_designs
+from frahm.design.effort import step_weights
 from frahm.design.finalists import FAR
 from frahm.design.objective import Objective
 from frahm.design.pareto import pareto_front
@@ -23,6 +24,7 @@ __all__ = [
     "parameters_text",
     "pareto_front",
     "save_design",
+    "step_weights",
     "verified_designs",
     "with_design",
 ]

@@ -163,7 +163,7 @@ def _relative_coordinates(N: Floats) -> tuple[Floats, Floats]:
     own, factors = _parallel(N)
     if rank == len(own):
         N = N[:, own]
-        return np.asarray(np.linalg.solve(N.T @ N, N.T).T, dtype=float), factors
+        return np.asarray(np.linalg.pinv(N).T, dtype=float), factors
     V = np.linalg.svd(N)[0][:, :rank]
     return V, V.T @ N
 
@@ -193,8 +193,9 @@ def _poles(M: Floats, C: Floats, K: Floats) -> tuple[Complexes, Complexes, Compl
     A = np.block([[np.zeros((m, m)), np.eye(m)], [-inverse @ K, -inverse @ C]])
     scale = np.sqrt(np.linalg.norm(A[m:, :m])) or 1.0  # balance displacement against velocity
     balance = np.concatenate([np.full(m, scale), np.ones(m)])
-    lam, V = np.linalg.eig(balance[:, None] * A / balance)
-    if np.linalg.cond(V) > 1e10:
+    A = balance[:, None] * A / balance
+    lam, V = np.linalg.eig(A) if np.all(np.isfinite(A)) else (np.zeros(2 * m), np.zeros((2 * m, 2 * m)))
+    if not np.linalg.cond(V) <= 1e10:
         raise ParameterError(
             "system", "a structure that can drift or has a defective mode with its elements held",
             "a structure that stays supported when the coordinates of its elements are fixed",

@@ -47,7 +47,8 @@ def detached_events(
     system: System, parameter: str, window: tuple[float, float], bounds: tuple[float, float], slices: int
 ) -> Found[DetachedCurveEvent]:
     """Births and merges of detached curves: extremes of the parameter along its saddle-node curves."""
-    _, traces = loci_with_frequency(system, "saddle-node", parameter, window, bounds, slices, asymmetric=False)
+    doubts: list[str] = []
+    _, traces = loci_with_frequency(system, "saddle-node", parameter, window, bounds, slices, False, doubts)
     events: list[DetachedCurveEvent] = []
     for equations, points in traces:
         at = equations.n + 1
@@ -66,7 +67,7 @@ def detached_events(
         f"Between {window[0]:.6g} and {window[1]:.6g} rad/s, {parameter} between {bounds[0]:.6g} and {bounds[1]:.6g},"
         f" along the saddle-nodes met at {slices} values of {parameter}; nothing beyond."
     )
-    return Found(sorted(events, key=lambda event: event.value), searched)
+    return Found(sorted(events, key=lambda event: event.value), searched, tuple(doubts))
 
 
 def _event(equations: Equations, point: CurvePoint, parameter: str, direction: int) -> DetachedCurveEvent:

@@ -30,6 +30,7 @@ _ADVANCE = 1.2  # fastest motion per step [rad]
 _REACHED = 10.0  # up to this multiple of the frequency a mode does not follow statically
 _TURN = 2.0  # highest harmonic per step [rad]
 _RESOLVED = 1e-9  # last Chebyshev coefficients of a slope, relative to its largest value, times the share of the step
+_MOST_STEPS = 50_000  # of a period: what is slower is not followed
 _SHORTEST = 1e-4  # step, as a share of the first one
 _POINTS = 0.5 - 0.5 * np.cos(np.pi * (np.arange(_NODES) + 0.5) / _NODES)
 _TO_POWERS = np.linalg.inv(_POINTS[:, None] ** np.arange(_NODES))
@@ -109,7 +110,7 @@ def _variation(K: Floats, C: Floats, push: Floats, feel: Floats, flexibility: Fl
 def monodromy(pb, va, H, odd, W, u, Phi):
     """Fundamental matrix Phi (2n, 2n) over half a period (odd orbits) or a whole one; states (x, v).
 
-    u (H + 5, r) are the harmonics of the relative coordinates.
+    u (H + 5, r) are the harmonics of the relative coordinates. False, and NaN, if that takes more than `_MOST_STEPS`.
     """
     n, E = va.K.shape[0], va.feel.shape[0]
     m = 2 * n
@@ -121,6 +122,9 @@ def monodromy(pb, va, H, odd, W, u, Phi):
         square += va.hardest[e] * slope[e]
     turn = W * _reach(H, u) * max(1.0, 0.5 * (pb.degree - 1))  # the slope of a power p has harmonics up to (p - 1) H
     steps = math.ceil(max(span * math.sqrt(square) / _ADVANCE, span * turn / _TURN, 3.0))
+    if not steps <= _MOST_STEPS:
+        Phi[:] = math.nan
+        return False
     h = span / steps
     adaptive = pb.degree == 0
     Phi[:] = 0.0
@@ -181,6 +185,7 @@ def monodromy(pb, va, H, odd, W, u, Phi):
         done += length
         if adaptive and tail * length < 1e-2 * _RESOLVED:
             length = min(2.0 * length, 1.0)
+    return True
 
 
 @kernel
@@ -361,11 +366,14 @@ def _pair(a, b, out, at):
 def map_multipliers(pb, va, H, odd, W, u, out):
     """Eigenvalues of the half map -Phi(T/2) (odd orbits) or of Phi(T), sorted by descending modulus.
 
-    All are infinite where a disturbance grows beyond what numbers hold: "unstable" is all that is known there.
+    All are infinite where a disturbance grows beyond what numbers hold: "unstable" is all that is known there. All are
+    NaN where a period takes too many steps.
     """
     m = 2 * va.K.shape[0]
     Phi = np.empty((m, m))
-    monodromy(pb, va, H, odd, W, u, Phi)
+    if not monodromy(pb, va, H, odd, W, u, Phi):
+        out[:] = complex(math.nan, 0.0)
+        return
     if not np.all(np.isfinite(Phi)):
         out[:] = complex(math.inf, 0.0)
         return

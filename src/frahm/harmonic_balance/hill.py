@@ -14,6 +14,8 @@ import numpy as np
 from frahm.compiled import kernel
 from frahm.harmonic_balance.kernels import element_force, fourier_tables, sample_count, stiffness
 
+_BESIDE = 1e-15  # of Hill's matrix
+
 
 @kernel
 def refine_exponents(pb, H, odd, W, u, multipliers, count):
@@ -70,8 +72,12 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
                     good = True
                     break
                 _assemble(pb, P, lam, W, step, h, A, D)
-            v = np.linalg.solve(A, D @ v if iteration > 0 else v)
-            w = np.linalg.solve(A.T.copy(), D.T @ w if iteration > 0 else w)
+            near = A.copy()  # at an exponent itself the matrix is singular: a rounding beside it is as good
+            size = np.max(np.abs(A)) * _BESIDE
+            for i in range(near.shape[0]):
+                near[i, i] += size
+            v = np.linalg.solve(near, D @ v if iteration > 0 else v)
+            w = np.linalg.solve(near.T.copy(), D.T @ w if iteration > 0 else w)
             v /= np.max(np.abs(v))
             w /= np.max(np.abs(w))
         for earlier in range(index):  # one that was found before: multipliers are too close to be told apart from here

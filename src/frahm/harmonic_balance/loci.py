@@ -75,16 +75,19 @@ def loci_with_frequency(
     bounds: tuple[float, float],
     slices: int,
     asymmetric: bool = True,
+    doubts: list[str] | None = None,
 ) -> tuple[list[Locus], list[tuple[Equations, list[CurvePoint]]]]:
     """Curves of one kind in the plane (Omega, parameter): those that cross one of several slices of the plane.
 
     Every slice is the complete response curve at one value of the parameter; all its special points of that kind are
-    followed in both directions to the edge of the plane.
+    followed in both directions to the edge of the plane. A slice whose search met its limit of work, and a curve that
+    was not followed to its end for want of it, adds a sentence to `doubts`.
     """
+    doubts = [] if doubts is None else doubts
     loci: list[Locus] = []
     traces: list[tuple[Equations, list[CurvePoint]]] = []
     for value in _slice_values(system, parameter, bounds, slices):
-        for start in _starts(system, kind, parameter, window, value, asymmetric):
+        for start in _starts(system, kind, parameter, window, value, asymmetric, doubts):
             frequency, peak = float(start.event.columns[0]), float(start.event.columns[4])
             alike = [locus for locus in loci if locus.symmetric == start.track.odd]
             if any(_lies_on(locus, frequency, value, peak, window) for locus in alike):
@@ -93,6 +96,8 @@ def loci_with_frequency(
             if found is not None:
                 loci.append(found[0])
                 traces.append(found[1])
+                if Outcome.STEP_LIMIT in found[0].outcomes:
+                    doubts.append(f"A curve of {kind} points from {frequency:.6g} rad/s was not followed to its end.")
     return loci, traces
 
 
@@ -103,6 +108,7 @@ def loci_at_frequency(
     bounds: tuple[tuple[float, float], tuple[float, float]],
     frequency: float,
     slices: int,
+    doubts: list[str] | None = None,
 ) -> list[Locus]:
     """Curves of one kind in a plane of two parameters at fixed Omega.
 
@@ -113,7 +119,7 @@ def loci_at_frequency(
     loci: list[Locus] = []
     for value in _slice_values(system, plane[1], bounds[1], slices):
         changed = with_parameters(system, **{plane[1]: value})
-        _, traces = loci_with_frequency(changed, kind, plane[0], window, bounds[0], 3)
+        _, traces = loci_with_frequency(changed, kind, plane[0], window, bounds[0], 3, doubts=doubts)
         for equations, points in traces:
             for start in _at_frequency(equations, points, frequency):
                 found = _from_point(changed, equations, start, kind, plane, bounds, frequency, value)
@@ -130,11 +136,14 @@ def _slice_values(system: System, parameter: str, bounds: tuple[float, float], s
 
 
 def _starts(
-    system: System, kind: str, parameter: str, window: tuple[float, float], value: float, asymmetric: bool
-) -> list[_Start]:
+    system: System, kind: str, parameter: str, window: tuple[float, float], value: float, asymmetric: bool,
+    doubts: list[str],
+) -> list[_Start]:  # fmt: skip
     search = begin(with_parameters(system, **{parameter: float(value)}), *window, None)
     starts = []
-    for track in find_branches(search, asymmetric):
+    tracks = find_branches(search, asymmetric)
+    doubts += [f"At {parameter} {value:.6g}: {sentence}" for sentence in search.budget.sentences()]
+    for track in tracks:
         for event, point in zip(track.events, track.event_points, strict=True):
             if event.kind == kind and point is not None:
                 starts.append(_Start(search, track, event, point, float(value)))

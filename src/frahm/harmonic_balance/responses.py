@@ -39,7 +39,7 @@ class PeriodicResponse:
         Complex amplitudes X_k [m] of all coordinates: x(t) = Re sum_k X_k e^{i k Omega t}.
     multipliers : ndarray of complex, shape (2n,)
         Floquet multipliers over one period, by descending modulus; all infinite where a disturbance grows beyond what
-        numbers hold.
+        numbers hold, NaN where a period takes too many steps to follow one.
     stable : bool
         Whether no multiplier lies outside the unit circle.
     pipe_peak, relative_peak : float
@@ -92,9 +92,10 @@ def periodic_responses_of(system: System, frequency: float, harmonics: int | Non
     search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
     tracks = find_branches(search, at=frequency)
     found = responses_on(search, tracks, frequency)
-    return Found(
-        found, inventory_text(search), (*search.budget.sentences(), *not_proven(search, frequency), *unfinished(tracks))
-    )
+    doubts = (
+        *search.unsearched, *search.budget.sentences(), *not_proven(search, frequency), *unfinished(tracks)
+    )  # fmt: skip
+    return Found(found, inventory_text(search), doubts)
 
 
 def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> list[PeriodicResponse]:
@@ -155,12 +156,12 @@ def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> Periodi
     ks = range(1, H + 1, 2) if odd else range(H + 1)
     rows = {k: np.array([output_harmonic(pb, k, W, u[k], row) for row in range(2 + n)]) for k in ks}
     Phi = np.empty((2 * n, 2 * n))
-    monodromy(pb, variation_of(search.system), H, odd, W, u, Phi)
+    followed = monodromy(pb, variation_of(search.system), H, odd, W, u, Phi)
     if np.all(np.isfinite(Phi)):
         values = np.linalg.eigvals(Phi).astype(complex)
         multipliers = values**2 if odd else values
-    else:  # a disturbance grows beyond all numbers: no multiplier is known
-        multipliers = np.full(2 * n, np.inf, complex)
+    else:  # a disturbance grows beyond all numbers, or the period is too long to follow: no multiplier is known
+        multipliers = np.full(2 * n, np.inf if followed else np.nan, complex)
     multipliers = multipliers[np.argsort(-np.abs(multipliers))]
     peaks = []
     for row in range(2):

@@ -13,6 +13,7 @@ from frahm.harmonic_balance.condensation import Problem, condense, unknowns
 from frahm.harmonic_balance.events import LocatedEvent, Point
 from frahm.harmonic_balance.floquet import Variation, variation_of
 from frahm.harmonic_balance.found import Budget
+from frahm.harmonic_balance.quasi_static import searched_window
 from frahm.harmonic_balance.seeds import Seeder, seeder_for
 from frahm.systems import System
 
@@ -71,6 +72,7 @@ class Search:
     x_scale: float
     w_scale: float
     harmonics: int | None
+    unsearched: tuple[str, ...] = ()
     budget: Budget = field(default_factory=Budget)
     undecided: list[float] = field(default_factory=list)  # Omega near which a detached curve may exist or not
 
@@ -105,6 +107,7 @@ def away_from_turns(search: Search, track: Track) -> int:
 
 def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None) -> Search:
     """Condense the system and set the scales of the search; `forcing` is a factor over Omega, see `forcing_factor`."""
+    lo, hi, unsearched = searched_window(system, lo, hi)
     pb = condense(system, forcing)
     grid = np.linspace(lo, hi, _SCALE_FREQUENCIES)
     largest = 0.0
@@ -116,7 +119,7 @@ def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: 
     outer = (max(lo - width, 0.02 * lo), hi + width)
     scale = largest or 1.0
     variation = variation_of(system, *_strongest(pb, scale, hi)) if system.size > 3 else variation_of(system)
-    return Search(system, pb, seeder, variation, lo, hi, outer, scale, width, harmonics)
+    return Search(system, pb, seeder, variation, lo, hi, outer, scale, width, harmonics, unsearched)
 
 
 def _strongest(pb: Problem, scale: float, hi: float) -> tuple[float, float]:

@@ -135,7 +135,7 @@ def searched_seeds(pb: Problem, W: float, scale: float, odd: bool) -> list[Seed]
     radius = scale * 10 ** (-2.5 + 2.8 * sample[:, :r])
     starts = radius * np.exp(2j * np.pi * sample[:, r : 2 * r])
     S, F = stiffness_at(pb, 1, W)
-    starts = np.vstack([np.linalg.solve(S, F), np.zeros(r), starts])
+    starts = np.vstack([_linear(S, F), np.zeros(r), starts])
     means = np.zeros((len(starts), r))
     if not odd:
         means[2:] = 1.5 * scale * (2 * sample[:, 2 * r :] - 1)
@@ -151,6 +151,14 @@ def searched_seeds(pb: Problem, W: float, scale: float, odd: bool) -> list[Seed]
         if ok and not any(np.max(np.abs(u - other)) < 1e-6 * (np.max(np.abs(u)) + 1e-12 * scale) for other in found):
             found.append(u)
     return [Seed(W, {1: u} if odd else {0: u[:r], 1: u[r:]}) for u in found]
+
+
+def _linear(S: Complexes, F: Complexes) -> Complexes:
+    """Motion of the elements without their springs; none right at an undamped resonance, where it has no bound."""
+    try:
+        return np.asarray(np.linalg.solve(S, F), dtype=complex)
+    except np.linalg.LinAlgError:
+        return np.zeros(len(F), dtype=complex)
 
 
 @dataclass(frozen=True)
@@ -180,7 +188,7 @@ class Seeder:
             return seeds
         if first_only:
             S, F = stiffness_at(pb, 1, W)
-            return [Seed(W, {1: np.asarray(np.linalg.solve(S, F), dtype=complex)})]
+            return [Seed(W, {1: _linear(S, F)})]
         seeds = searched_seeds(pb, W, scale, pb.odd) if self.shared is None else self._shared_seeds(W, self.shared)
         return seeds + searched_seeds(pb, W, scale, False) if self.buckled else seeds
 

@@ -95,7 +95,7 @@ class MotionView:
     @property
     def spectrum_range(self) -> tuple[float, float]:
         """Amplitudes [m] worth showing."""
-        top = max((float(np.max(a, initial=0.0)) for _, a in self.spectrum.values()), default=0.0) or 1.0
+        top = max((float(np.fmax.reduce(a, initial=0.0)) for _, a in self.spectrum.values()), default=0.0) or 1.0
         return top * 10.0**-_DECADES, 3 * top
 
     def peaks(self, quantity: str) -> tuple[float, float]:

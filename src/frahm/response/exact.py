@@ -58,7 +58,7 @@ def curve_and_branches(
 
 
 def _assembled(system: System, tracks: list[Track], search: Search, settings: dict[str, Any]) -> ResponseCurve:
-    special, doubtful = [], [*search.budget.sentences(), *not_proven(search)]
+    special, doubtful = [], [*search.unsearched, *search.budget.sentences(), *not_proven(search)]
     for number, track in enumerate(tracks):
         for event in track.events:
             W, _, _, pipe, relative = (float(value) for value in event.columns)
@@ -112,13 +112,18 @@ def _not_located(number: int, track: Track) -> list[str]:
 
 
 def _beyond_numbers(number: int, track: Track) -> list[str]:
-    """A sentence where disturbances grow too fast for their multipliers to be numbers."""
-    at = track.frequency[~np.all(np.isfinite(track.multipliers), axis=1)]
-    if not at.size:
-        return []
+    """Sentences where multipliers are no numbers."""
+    unknown = np.any(np.isnan(track.multipliers), axis=1)
+    beyond = ~np.all(np.isfinite(track.multipliers), axis=1) & ~unknown
+    reasons = (
+        (beyond, "a disturbance grows beyond all numbers within a period: it is unstable there, and"),
+        (unknown, "a period takes more steps than a search is given: its stability is not known there, nor are"),
+    )
     return [
-        f"Branch {number}: between {np.min(at):.6g} and {np.max(at):.6g} rad/s a disturbance grows beyond all numbers"
-        " within a period: it is unstable there, and its special points are not known."
+        f"Branch {number}: between {np.min(track.frequency[where]):.6g} and {np.max(track.frequency[where]):.6g} rad/s"
+        f" {reason} its special points" + (" are not known." if where is beyond else ".")
+        for where, reason in reasons
+        if np.any(where)
     ]
 
 

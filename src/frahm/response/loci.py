@@ -14,6 +14,7 @@ from frahm.harmonic_balance import is_linear
 from frahm.harmonic_balance.detached import DetachedCurveEvent, detached_events
 from frahm.harmonic_balance.found import Found
 from frahm.harmonic_balance.loci import Locus, loci_at_frequency, loci_with_frequency
+from frahm.harmonic_balance.quasi_static import searched_window
 from frahm.systems import (
     PARAMETERS,
     System,
@@ -78,16 +79,20 @@ def bifurcation_curve(
     limits = _checked_bounds(system, axes, bounds)
     count = check_count("slices", slices, at_most=200)
     along = [axis for axis in axes if axis in _FREQUENCIES]
+    doubts: list[str] = []
     if along:
         parameter = axes[0] if axes[1] in _FREQUENCIES else axes[1]
-        window = excitation_window(system, **{along[0]: limits[along[0]]})
-        found, _ = loci_with_frequency(system, kind, parameter, window, limits[parameter], count)
+        lo, hi, unsearched = searched_window(system, *excitation_window(system, **{along[0]: limits[along[0]]}))
+        window = (lo, hi)
+        doubts += unsearched
+        found, _ = loci_with_frequency(system, kind, parameter, window, limits[parameter], count, doubts=doubts)
     else:
         if detuning is None and frequency is None:
             detuning = 0.0
         W = excitation_frequency(system, detuning=detuning, frequency=frequency)
-        found = loci_at_frequency(system, kind, axes, (limits[axes[0]], limits[axes[1]]), W, count)
-    return _dataset(system, kind, axes, limits, found, count)
+        found = loci_at_frequency(system, kind, axes, (limits[axes[0]], limits[axes[1]]), W, count, doubts)
+    data = _dataset(system, kind, axes, limits, found, count)
+    return data.assign_attrs(unverified=" ".join(doubts)) if doubts else data
 
 
 def detached_curve_events(
@@ -137,7 +142,11 @@ def detached_curve_events(
     if detuning is None and frequency is None:
         frequency = (0.7 * system.reference_frequency, 1.4 * system.reference_frequency)
     window = excitation_window(system, detuning=detuning, frequency=frequency)
-    return detached_events(system, parameter, window, limits, check_count("slices", slices, at_least=2, at_most=200))
+    lo, hi, unsearched = searched_window(system, *window)
+    count = check_count("slices", slices, at_least=2, at_most=200)
+    found = detached_events(system, parameter, (lo, hi), limits, count)
+    found.unverified = (*unsearched, *found.unverified)
+    return found
 
 
 def _nonlinear(case_or_system: Case | System | str) -> System:

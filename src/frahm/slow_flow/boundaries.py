@@ -12,10 +12,12 @@ from frahm.arrays import Floats
 from frahm.compiled import kernel
 from frahm.continuation import zero_curves
 from frahm.errors import ParameterError, check_number, nearest
+from frahm.slow_flow.folds import double_root
 from frahm.slow_flow.kernels import characteristic, equilibria, hurwitz, linear_parts, pipe_amplitude
 from frahm.slow_flow.model import SlowFlow
 
 AXES = {"detuning": "rad/s", "kappa": "1/(m^2 s^2)", "xi2": "1/s", "rho2": "1", "force": "1"}
+_ROUNDING = 1e-13
 _LOADS = ("kappa", "force")
 _LOWEST = {"kappa": 0.0, "xi2": 0.0, "rho2": 0.0, "force": 0.0}
 
@@ -43,23 +45,14 @@ def _tests_at_n(form, omega, xi1, k1, W, xi2, rho2, m, saddle, hopf, third):
 
 @kernel
 def _loads_at_n(form, omega, xi1, k1, W, xi2, rho2, m, load, X, Z2):
-    """kappa F^2, and |X|^2 and |Z|^2 times kappa, where n = m |d0|/|s0|."""
+    """kappa F^2, and |X|^2 and |Z|^2 times kappa, where n = m |d0|/|s0|; no load where n only frees the motion."""
     for i in range(W.size):
         _, _, d0, _, s0, e, g2 = linear_parts(form, W[i], omega, xi1, xi2[i], k1, rho2[i])
         n = m[i] * abs(d0) / abs(s0)
-        load[i] = n * abs(d0 + n * s0) ** 2 / (0.75 * e * e)
+        force = abs(d0 + n * s0)
+        load[i] = n * force**2 / (0.75 * e * e) if force > _ROUNDING * (abs(d0) + n * abs(s0)) else 0.0
         Z2[i] = n / 0.75
         X[i] = pipe_amplitude(Z2[i], n, e, g2) ** 2
-
-
-@kernel
-def _double_root(c, h):
-    """The turning point of m^3 + 2 c m^2 + m whose value is nearer to h."""
-    spread = math.sqrt(max(4.0 * c * c - 3.0, 0.0))
-    low, high = (-2.0 * c - spread) / 3.0, (-2.0 * c + spread) / 3.0
-    miss_low = abs(((low + 2.0 * c) * low + 1.0) * low - h)
-    miss_high = abs(((high + 2.0 * c) * high + 1.0) * high - h)
-    return low if miss_low < miss_high else high
 
 
 @kernel
@@ -87,7 +80,7 @@ def _tests_on_roots(form, omega, xi1, k1, W, xi2, rho2, F, kappa, double, saddle
                 third[i], Z[i], X[i] = c3, math.sqrt(N), pipe_amplitude(N, n, e, g2)
         hopf[i] = product
         if double:
-            n = _double_root(c, h) * absd / abss
+            n = double_root(c, h) * absd / abss
             N = n / (0.75 * kappa[i])
             third[i], Z[i], X[i] = 1.0, math.sqrt(N), pipe_amplitude(N, n, e, g2)
 
@@ -185,7 +178,7 @@ def _load_test(at: _At, other: str, kind: str) -> Callable[[Floats, Floats], Flo
 
 
 def _load_along(at: _At, load: str, other: str, line: Floats) -> tuple[Floats, ...]:
-    """Value of the load axis, delta_3, |X| and |Z| [m] along a curve in (other axis, log m)."""
+    """Value of the load axis, delta_3, |X| and |Z| [m] along a curve in (other axis, log m); infinite without load."""
     v = at.values(**{other: line[:, 0]})
     arguments = (v["frequency"], v["xi2"], v["rho2"], np.exp(line[:, 1]))
     saddle, hopf, third, load2, X2, Z2 = (np.empty(len(line)) for _ in range(6))
@@ -193,14 +186,16 @@ def _load_along(at: _At, load: str, other: str, line: Floats) -> tuple[Floats, .
     _loads_at_n(*at.head, *arguments, load2, X2, Z2)
     kappa = load2 / (v["force"] * at.slow.force) ** 2 if load == "kappa" else v["kappa"]
     value = kappa if load == "kappa" else np.sqrt(load2 / kappa) / at.slow.force
-    return value, third, np.sqrt(X2 / kappa), np.sqrt(Z2 / kappa)
+    with np.errstate(divide="ignore"):
+        return value, third, np.sqrt(X2 / kappa), np.sqrt(Z2 / kappa)
 
 
 def _mapped(at: _At, plane: tuple[str, str], load: str, other: str, kind: str, line: Floats) -> list[BoundaryCurve]:
     """Carry a curve from (other axis, log m) to the plane and cut away what is no Hopf point."""
     value, third, X, Z = _load_along(at, load, other, line)
     coordinates = {other: line[:, 0], load: value}
-    keep = (third > 0) | (kind == "saddle-node")
+    # Without any damping the free motion is a curve of saddle-nodes that no load reaches.
+    keep = ((third > 0) | (kind == "saddle-node")) & (value > 0)
     return _runs(kind, keep, coordinates[plane[0]], coordinates[plane[1]], X, Z)
 
 

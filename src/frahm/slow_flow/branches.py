@@ -12,9 +12,10 @@ from frahm.arrays import Floats
 from frahm.compiled import kernel
 from frahm.errors import ConvergenceError
 from frahm.polynomials import growth_rate
+from frahm.slow_flow.folds import saddle_nodes
 from frahm.slow_flow.kernels import characteristic, equilibria, hurwitz, linear_parts, pipe_amplitude
 from frahm.slow_flow.model import SlowFlow
-from frahm.slow_flow.subdivision import HOPF, SADDLE_NODE, special_points
+from frahm.slow_flow.subdivision import hopf_points
 
 _MOST_POINTS = 256
 
@@ -91,11 +92,12 @@ def _on_curve(form, omega, xi1, xi2, k1, rho2, W, n):
 def locate_points(slow: SlowFlow, kind: str, lo: float, hi: float) -> list[LocatedPoint]:
     """All saddle-node or Hopf points with Omega in [lo, hi], ascending in Omega [rad/s]."""
     out = np.empty((_MOST_POINTS, 3))
-    code = {"saddle-node": SADDLE_NODE, "hopf": HOPF}[kind]
-    found = special_points(slow.code, *slow.host, slow.force, slow.kappa, code, lo, hi, out)
+    search = {"saddle-node": saddle_nodes, "hopf": hopf_points}[kind]
+    found = search(slow.code, *slow.host, slow.force, slow.kappa, lo, hi, out)
     if found < 0:
         raise ConvergenceError(
-            f"The {kind} points could not be separated: there are too many of them, or they coincide."
+            f"The {kind} points could not all be separated within the work a search is given: there are too many of"
+            " them, or they nearly coincide."
         )
     points = []
     for W, n, undecided in out[:found][np.argsort(out[:found, 0])]:

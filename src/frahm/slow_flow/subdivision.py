@@ -1,11 +1,11 @@
-"""All saddle-node and Hopf points of the slow flow in a window, by subdivision with exclusion and uniqueness tests.
+"""All Hopf points of the slow flow in a window, by subdivision with exclusion and uniqueness tests.
 
-On the response curve C(u, n) = n |d0 + n s0|^2 - Q = 0 the saddle-nodes are the zeros of delta_4 and the Hopf points
-those of the Hurwitz determinant. Both, and C, are polynomials of degree at most 4 in n = 3/4 kappa |Z|^2 and in u
-(u = Omega in the paper's form, Omega^2 in the averaged one). A polynomial lies between its smallest and its largest
-Bernstein coefficient, so a box whose coefficients have one sign holds no zero; a box on which the preconditioned pair
-is injective holds at most one, which a contraction then finds. Every other box is halved. Nothing is read off a grid
-and nothing can be missed; a box that stays undecided at the smallest size is reported as such.
+On the response curve C(u, n) = n |d0 + n s0|^2 - Q = 0 they are zeros of the Hurwitz determinant. Both are polynomials
+of degree at most 4 in n = 3/4 kappa |Z|^2 and in u (u = Omega in the paper's form, Omega^2 in the averaged one). A
+polynomial lies between its smallest and its largest Bernstein coefficient, so a box whose coefficients have one sign
+holds no zero; a box on which the preconditioned pair is injective holds at most one, which
+a contraction then finds. Every other box is halved. Nothing is read off a grid and nothing can be missed; a box that
+stays undecided at the smallest size is reported as such, and so is a search that would need more than `MOST_BOXES`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from frahm.compiled import kernel
 from frahm.slow_flow.kernels import AVERAGED, characteristic, hurwitz, linear_parts
 
-SADDLE_NODE, HOPF = 0, 1
+MOST_BOXES = 200_000
 _DEGREE = 4
 _NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE)
 _BINOMIAL = np.array([math.comb(_DEGREE, i) for i in range(_DEGREE + 1)], dtype=float)
@@ -25,7 +25,7 @@ _BASIS = _BINOMIAL * _NODES[:, None] ** np.arange(_DEGREE + 1) * (1 - _NODES[:, 
 _TO_BERNSTEIN = np.linalg.inv(_BASIS)
 _NOISE = 1e-13
 _SMALLEST = 2.0**-44
-_STIFFEST = 1e6  # n over the sink's inertia e beyond which the sink is as good as fixed to the pipe
+STIFFEST = 1e6  # n over the sink's inertia e beyond which the sink is as good as fixed to the pipe
 _STRIPS = 24
 
 
@@ -42,8 +42,8 @@ def variable_of(form, W):
 
 
 @kernel
-def _sample(form, omega, xi1, xi2, k1, rho2, F, kappa, kind, u0, du, n0, dn, C, T):
-    """Values of the curve C and of the test function T at 5 x 5 nodes of a box."""
+def _sample(form, omega, xi1, xi2, k1, rho2, F, kappa, u0, du, n0, dn, C, T):
+    """Values of the curve C and of the Hurwitz determinant T at 5 x 5 nodes of a box."""
     for i in range(_DEGREE + 1):
         u = u0 + du * _NODES[i]
         d2, d1, d0, s1, s0, e, _ = linear_parts(form, frequency_of(form, u), omega, xi1, xi2, k1, rho2)
@@ -54,7 +54,7 @@ def _sample(form, omega, xi1, xi2, k1, rho2, F, kappa, kind, u0, du, n0, dn, C, 
             w = d0 + n * s0
             C[i, j] = n * (w.real * w.real + w.imag * w.imag) - Q
             c1, c2, c3, c4 = characteristic(d2, d1, d0, s1, s0, n)
-            T[i, j] = weight * (c4 if kind == SADDLE_NODE else hurwitz(c1, c2, c3, c4))
+            T[i, j] = weight * hurwitz(c1, c2, c3, c4)
 
 
 @kernel
@@ -154,19 +154,20 @@ def _solve_in_box(C, T, a11, a12, a21, a22):
 
 
 @kernel
-def special_points(form, omega, xi1, xi2, k1, rho2, F, kappa, kind, W_lo, W_hi, out):
-    """Fill `out` (rows of Omega, n, undecided 0/1) with the zeros of the test function on the curve; their number.
+def hopf_points(form, omega, xi1, xi2, k1, rho2, F, kappa, W_lo, W_hi, out):
+    """Fill `out` (rows of Omega, n, undecided 0/1) with the zeros of the determinant on the curve; their number.
 
-    A negative number means `out` or the work list was too short.
+    A negative number means that there was too much to do. Without any damping the determinant is zero everywhere, but
+    no eigenvalue crosses.
     """
+    if kappa == 0.0 or F == 0.0 or (xi1 == 0.0 and xi2 == 0.0):
+        return 0
     m = _DEGREE + 1
     C, T, work = np.empty((m, m)), np.empty((m, m)), np.empty((m, m))
     u_lo, u_hi = variable_of(form, W_lo), variable_of(form, W_hi)
     n_hi = _n_bound(form, omega, xi1, xi2, k1, rho2, F, kappa, u_lo, u_hi)
-    if kappa == 0.0 or F == 0.0:
-        return 0
     stack = np.empty((2048, 4))
-    top, found = 0, 0
+    top, found, looked = 0, 0, 0
     height = abs(n_hi)
     for strip in range(_STRIPS):  # from large n to small, each strip a quarter of the one above it
         base = 0.25 * height if strip < _STRIPS - 1 else 0.0
@@ -176,8 +177,11 @@ def special_points(form, omega, xi1, xi2, k1, rho2, F, kappa, kind, W_lo, W_hi, 
         top += 1
     while top > 0:
         top -= 1
+        looked += 1
+        if looked > MOST_BOXES:
+            return -1
         u0, du, n0, dn = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
-        _sample(form, omega, xi1, xi2, k1, rho2, F, kappa, kind, u0, du, n0, dn, C, T)
+        _sample(form, omega, xi1, xi2, k1, rho2, F, kappa, u0, du, n0, dn, C, T)
         _to_bernstein(T, work)
         if _one_sign(T):
             continue
@@ -241,13 +245,13 @@ def _n_bound(form, omega, xi1, xi2, k1, rho2, F, kappa, u_lo, u_hi):
         S = abs(s0)
         if S > 0.0:
             here = abs(d0) / S + np.cbrt(abs(0.75 * kappa) * e * e * F * F / (S * S))
-            bound = max(bound, min(here, _STIFFEST * abs(e)))
+            bound = max(bound, min(here, STIFFEST * abs(e)))
     # |s0| is smallest, and the bound largest, where the pipe is in resonance with the sink's mass locked to it
     W = omega / math.sqrt(1.0 + rho2) if form == AVERAGED else omega
     if W > 0.0 and u_lo <= variable_of(form, W) <= u_hi:
         _, _, d0, _, s0, e, _ = linear_parts(form, W, omega, xi1, xi2, k1, rho2)
         S = abs(s0)
-        here = _STIFFEST * abs(e)
+        here = STIFFEST * abs(e)
         if S > 0.0:
             here = min(here, abs(d0) / S + np.cbrt(abs(0.75 * kappa) * e * e * F * F / (S * S)))
         bound = max(bound, here)

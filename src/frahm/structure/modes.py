@@ -222,7 +222,14 @@ def _solved(beam: Beam, degree: int, count: int) -> tuple[Floats, Floats]:
 
     K, M, rows = matrices(beam, degree)
     # 1/omega^2 as the eigenvalue: then it is the low modes whose error is of the order of rounding.
-    inverse, vectors = scipy.linalg.eigh(M, K, subset_by_index=(len(K) - count, len(K) - 1))
+    try:
+        inverse, vectors = scipy.linalg.eigh(M, K, subset_by_index=(len(K) - count, len(K) - 1))
+    except (np.linalg.LinAlgError, ValueError) as error:
+        raise ParameterError(
+            "beam", f"{len(beam.nodes)} nodes over {beam.length:g} m", "a beam that its supports hold, whose stiffness"
+            " and springs are within some twelve orders of magnitude",
+            hint=f"Its modes cannot be computed: {error}",
+        ) from None  # fmt: skip
     inverse, vectors = inverse[::-1], vectors[:, ::-1]
     padded = np.vstack([vectors, np.zeros((1, count))])  # row -1: what is held does not move
     nodes = np.array(beam.nodes) / beam.length

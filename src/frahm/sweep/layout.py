@@ -6,6 +6,7 @@ from one that holds nothing. The head, `zarr.json` of the group, holds a hash of
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import math
@@ -19,7 +20,7 @@ import numpy as np
 from frahm import __version__
 from frahm.case import field_table
 from frahm.errors import ParameterError
-from frahm.files import write_text
+from frahm.files import patiently, write_text
 from frahm.sweep.reasons import Reasons
 from frahm.sweep.study import Axes, Study
 from frahm.sweep.variables import ROOTS, STATUS_CODES, Variable, variables_of
@@ -162,7 +163,7 @@ def write_chunks(array: Any, values: np.ndarray, chunks: Iterable[int] | None = 
     written: Any = zarr.Array(again)
     for chunk in range(math.prod(array.cdata_shape)) if chunks is None else chunks:
         part = chunk_part(array, chunk)
-        written[part] = whole[part]
+        patiently(functools.partial(written.__setitem__, part, whole[part]))
 
 
 def _has_seeds(study: Study) -> bool:

@@ -102,7 +102,7 @@ def _locked(handle: int) -> bool:
 def _is_still(handle: int, file: Path) -> bool:
     try:
         return os.path.samestat(os.fstat(handle), file.stat())
-    except FileNotFoundError:
+    except (FileNotFoundError, PermissionError):  # the second on Windows: removed, but still open somewhere
         return False
 
 

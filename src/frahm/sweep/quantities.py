@@ -55,10 +55,14 @@ def is_closed_form(study: Study, name: str) -> bool:
     return name == "slow_flow" and not at_window(study, study.asked[name])
 
 
+# Not of a point: another time, or on another machine, it may go well. What is not finished stays to be computed.
+OF_THE_MACHINE = (OSError, MemoryError)
+
+
 def _guarded(function: Callable[[Point, Any], Found], point: Point, asked: Any) -> Found:
     try:
         return function(point, asked)
-    except OSError:  # of the machine, not of the point: another time it may go well
+    except OF_THE_MACHINE:
         raise
     except Exception as error:  # a sweep never dies: any failure of a point is a value
         return Found(failure=_said(error))
@@ -96,7 +100,7 @@ def equilibria(study: Study, indices: np.ndarray) -> tuple[dict[str, np.ndarray]
         try:
             found = _map(first, {name: column[rows] for name, column in values.items()}, rows.size)
             pipe[rows], relative[rows], stability[rows] = found
-        except OSError:
+        except OF_THE_MACHINE:
             raise
         except Exception as error:
             if rows.size == 1:

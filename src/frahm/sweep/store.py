@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from frahm.errors import ParameterError, door
-from frahm.files import write_text
+from frahm.files import put_in_place, write_text
 from frahm.sweep.batch import Batch
 from frahm.sweep.layout import (
     ALLOWED,
@@ -207,8 +207,8 @@ def create_store(path: Path, study: Study) -> Store:
             room.mkdir()
             lay_out(room / "new", study)
             if path.exists():
-                path.rename(room / "old")
-            (room / "new").rename(path)
+                put_in_place(path, room / "old")
+            put_in_place(room / "new", path)
     finally:
         shutil.rmtree(room, ignore_errors=True)
     return _blank(path, study)
@@ -225,7 +225,7 @@ def clear_beside(path: Path) -> None:
         return
     with _written(path):
         if (room / "old").exists() and not path.exists():
-            (room / "old").rename(path)
+            put_in_place(room / "old", path)
         shutil.rmtree(room)
 
 

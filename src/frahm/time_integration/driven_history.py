@@ -24,6 +24,8 @@ _FLOOR = 1e-6  # of the static deflection: the size of a pipe at rest
 class DrivenHistory:
     """A trajectory in unsteady wind at equally spaced times.
 
+    Of a run that failed, the samples up to there are kept; its peaks and rms are NaN.
+
     Attributes
     ----------
     time : ndarray, shape (s,)
@@ -60,20 +62,20 @@ class DrivenHistory:
 
     @property
     def pipe_peak(self) -> float:
-        """Largest displacement of the pipe [m]."""
-        return signals.peak(self.pipe, self.v @ self.system.output, self._spacing)
+        """Largest displacement of the pipe [m]; NaN if the run failed."""
+        return self.outcome.known(signals.peak(self.pipe, self.v @ self.system.output, self._spacing))
 
     @property
     def relative_peak(self) -> float:
-        """Largest displacement of the first element [m]; NaN without elements."""
+        """Largest displacement of the first element [m]; NaN without elements, or if the run failed."""
         if not self.system.elements:
             return math.nan
-        return signals.peak(self.z, self.v @ self.system.elements[0].direction, self._spacing)
+        return self.outcome.known(signals.peak(self.z, self.v @ self.system.elements[0].direction, self._spacing))
 
     def pipe_rms(self, since: float = 0.0) -> float:
-        """Root mean square of the pipe [m] from the time `since` [s] on."""
+        """Root mean square of the pipe [m] from the time `since` [s] on; NaN if the run failed."""
         kept = self.pipe[self.time >= since - 0.5 * self._spacing]
-        return float(np.sqrt(np.mean(kept**2))) if kept.size else math.nan
+        return self.outcome.known(float(np.sqrt(np.mean(kept**2)))) if kept.size else math.nan
 
     @property
     def _spacing(self) -> float:

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 class TimeHistory:
     """A trajectory at samples equally spaced in the phase of the forcing.
 
+    Of a run that failed, the samples up to there are kept, and what is made of them one by one (envelope, Poincare
+    section, datasets) carries its `outcome`; what stands for the whole of it (peaks, rms, spectrum) is NaN.
+
     Attributes
     ----------
     time : ndarray, shape (s,)
@@ -85,13 +88,13 @@ class TimeHistory:
 
     @property
     def rms(self) -> float:
-        """Root mean square of the output [m] over the samples kept (whole periods if there are any)."""
-        return signals.rms(self.pipe, self.samples_per_period)
+        """Root mean square of the output [m] over the samples kept (whole periods if any); NaN if the run failed."""
+        return self.outcome.known(signals.rms(self.pipe, self.samples_per_period))
 
     @property
     def relative_rms(self) -> float:
-        """Root mean square of z [m]."""
-        return signals.rms(self.z, self.samples_per_period)
+        """Root mean square of z [m]; NaN if the run failed."""
+        return self.outcome.known(signals.rms(self.z, self.samples_per_period))
 
     def last(self, periods: float) -> TimeHistory:
         """The same history, the last `periods` periods only."""
@@ -102,12 +105,14 @@ class TimeHistory:
         )
 
     def peaks(self, last: float | None = None) -> Peaks:
-        """Largest |x| of the output and |z| [m] over the last `last` periods (all by default), between samples too."""
+        """Largest |x| of the output and |z| [m] over the last `last` periods (all by default), between samples too.
+
+        NaN if the run failed; `outcome` says how.
+        """
         part = self if last is None else self.last(last)
         spacing = 2 * np.pi / self.frequency / self.samples_per_period
-        return Peaks(
-            signals.peak(part.pipe, part.v @ self.system.output, spacing), signals.peak(part.z, part.w, spacing)
-        )
+        pipe, relative = (part.pipe, part.v @ self.system.output), (part.z, part.w)
+        return Peaks(*(self.outcome.known(signals.peak(*motion, spacing)) for motion in (pipe, relative)))
 
     def spectrum(self, window: str = "hann") -> xr.Dataset:
         """One-sided amplitude spectrum: a cosine of amplitude 1 gives 1 at its frequency.
@@ -120,11 +125,12 @@ class TimeHistory:
         Returns
         -------
         xarray.Dataset
-            `pipe_amplitude` and `relative_amplitude` [m] over `frequency_hz`.
+            `pipe_amplitude` and `relative_amplitude` [m] over `frequency_hz`; NaN if the run failed.
         """
         check_choice("window", window, ("hann", "boxcar"))
         spacing = 2 * np.pi / self.frequency / self.samples_per_period
-        return signals.spectrum(self.pipe, self.z, spacing, self.samples_per_period, window, self._attributes())
+        pipe, relative = (self.outcome.known(1.0) * values for values in (self.pipe, self.z))
+        return signals.spectrum(pipe, relative, spacing, self.samples_per_period, window, self._attributes())
 
     def envelope(self) -> xr.Dataset:
         """Amplitude [m] and phase [rad] of the first harmonic period by period: x = amplitude cos(Omega t + phase)."""

@@ -55,7 +55,7 @@ def spectrum(
     import xarray as xr
 
     count = whole_periods(pipe.size, per_period)
-    if count < 4:
+    if count < 4 and np.all(np.isfinite(pipe)):
         raise ParameterError("samples", pipe.size, "a history of at least four samples")
     weights = np.ones(count) if window == "boxcar" else 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(count) / count)
     sides = np.full(count // 2 + 1, 2.0)

@@ -92,6 +92,15 @@ class UnsteadyResponse:
         return next((run.outcome for run in runs if not run.outcome.ok), Outcome.DONE)
 
     @property
+    def duration(self) -> float:
+        """Length of the motions asked for [s]."""
+        return (self.speed.size - 1) * self._spacing
+
+    @property
+    def _spacing(self) -> float:
+        return 2 * math.pi / self.case.pipe.frequency / self.samples_per_period
+
+    @property
     def reduction_by_absorbers(self) -> float:
         """1 - rms with absorbers over rms without, in the record [-]."""
         return 1 - _ratio(self.history.pipe_rms(self.since), self.bare.pipe_rms(self.since))
@@ -123,7 +132,6 @@ class UnsteadyResponse:
         }  # fmt: skip
         if self.history.system.elements:
             names["relative_displacement"] = (self.history.z, "displacement of the first element")
-        spacing = float(self.history.time[1]) if self.history.time.size > 1 else 0.0
         return xr.Dataset(
             {
                 "wind_speed": labelled("time", self.speed, "wind speed", "m/s"),
@@ -131,7 +139,7 @@ class UnsteadyResponse:
                 "lift": labelled("time", self.lift, "amplitude of the lift", "N"),
                 **{name: labelled("time", _filled(x, size), text, "m") for name, (x, text) in names.items()},
             },
-            {"time": labelled("time", spacing * np.arange(size), "time", "s")},
+            {"time": labelled("time", self._spacing * np.arange(size), "time", "s")},
             {
                 "case": self.case.name, "record": self.record.source, "tolerance": self.tolerance,
                 "outcome": self.outcome.name, "time_constant": self.time_constant,
@@ -302,6 +310,8 @@ def _resonance(case: Case, bare: System) -> tuple[float, float, float]:
     spacing = 2 * math.pi / omega * periods
     run = integrate_record(constant_record(speed, 3 * spacing), here, system, np.zeros(2 * system.size), spacing, 3,
                            TOLERANCE)  # fmt: skip
+    if not run.outcome.ok:
+        return speed, amplitude, math.nan
     # x = A (1 - e^-t/tau) sin: the ratio of two sizes, one time apart and twice it, knows neither A nor the phase.
     size = np.hypot(run.x[:, 0], run.v[:, 0] / omega)
     ratio = float(size[2] / size[1]) - 1

@@ -39,11 +39,11 @@ class LockInCurve:
     speed : ndarray, shape (s,)
         Ascending [m/s].
     pipe_peak, pipe_rms, relative_peak : ndarray, shape (2, s)
-        Largest and root mean square displacement of the pipe, largest of the first absorber [m].
+        Largest and root mean square displacement of the pipe, largest of the first absorber [m]; NaN if the run failed.
     wake_peak : ndarray, shape (2, s)
-        Largest |q| [-].
+        Largest |q| [-]; NaN if the run failed.
     frequency : ndarray, shape (2, s)
-        Of the pipe, from its zero crossings [rad/s].
+        Of the pipe, from its zero crossings [rad/s]; NaN if the run failed.
     settled : ndarray of bool, shape (2, s)
         Whether the size of the motion had stopped changing when it was read off.
     outcomes : tuple of tuple of Outcome
@@ -60,15 +60,20 @@ class LockInCurve:
 
     @property
     def largest(self) -> tuple[float, float]:
-        """Largest displacement of the pipe [m] and its wind speed [m/s]."""
-        place = int(np.nanargmax(np.nanmax(self.pipe_peak, axis=0)))
-        return float(np.nanmax(self.pipe_peak)), float(self.speed[place])
+        """Largest displacement of the pipe [m] and its wind speed [m/s], of the runs that ended well; NaN if none."""
+        place = int(np.argmax(np.fmax(self._known[0], self._known[1])))
+        return float(np.fmax(*self.pipe_peak)[place]), float(self.speed[place])
 
     @property
     def hysteresis(self) -> Floats:
         """Speeds [m/s] at which the two directions differ by more than 1 % of the largest motion."""
-        apart = np.abs(self.pipe_peak[0] - self.pipe_peak[1]) > 0.01 * np.nanmax(self.pipe_peak)
+        apart = np.abs(self.pipe_peak[0] - self.pipe_peak[1]) > 0.01 * np.max(self._known)
         return self.speed[apart]
+
+    @property
+    def _known(self) -> Floats:
+        """Peaks of the pipe [m], those of failed runs below any other."""
+        return np.where(np.isnan(self.pipe_peak), -np.inf, self.pipe_peak)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +112,8 @@ class WakeResponse:
                 text = ", ".join(f"{speed:.4g}" for speed in open_ends[:8])
                 more = f" and {open_ends.size - 8} more" if open_ends.size > 8 else ""
                 sentences.append(f"The motion {name} had not settled at {text}{more} m/s.")
+            failed = {outcome.value: None for row in curve.outcomes for outcome in row if not outcome.ok}
+            sentences += [f"Some motions {name} failed: {reason}" for reason in failed]
             if curve is self.bare and curve is self.curve:
                 break
         return tuple(dict.fromkeys(sentences))
@@ -252,9 +259,15 @@ def _sweep(
     first = np.zeros(system.size)
     first[0] = 1.0
     mechanics, flow = mechanics_of(system, first), wake_flow(case, wake)
+    state = _start(system)
+    return [_lasting(case, system, mechanics, flow, float(speed), state, tolerance, blocks) for speed in order]
+
+
+def _start(system: System) -> Floats:
+    """At rest, the wake barely moving."""
     state = np.zeros(2 * system.size + 2)
     state[2 * system.size] = WAKE_START
-    return [_lasting(case, system, mechanics, flow, float(speed), state, tolerance, blocks) for speed in order]
+    return state
 
 
 def _lasting(
@@ -278,6 +291,9 @@ def _lasting(
     spacing = period / _PER_PERIOD
     code, taken, _, _ = drive(mechanics, flow, knots, wind, spacing, omega, least, tolerance, LEAST_STEPS, state, fine)
     outcome, fine = outcome_of(code), fine[:taken]
+    if not outcome.ok:
+        state[:] = _start(system)  # the next speed knows nothing of this one
+        return math.nan, math.nan, math.nan, math.nan, math.nan, False, outcome
     x, v, q, rate = fine[:, 0], fine[:, n], fine[:, 2 * n], fine[:, 2 * n + 1]
     relative = math.nan
     if system.elements:
@@ -286,7 +302,7 @@ def _lasting(
     rms = float(np.sqrt(np.mean(x**2)))
     return (
         signals.peak(x, v, spacing), rms, relative, signals.peak(q, rate, spacing), _frequency(x, spacing),
-        settled and outcome.ok, outcome,
+        settled, outcome,
     )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from frahm.case import Case
-from frahm.web.tuned import tuned_case
+from frahm.web.tuned import MASS_RATIO
 
 # Steps that put nothing to the test, and that the verdict does not read.
 _ONLY_SHOWN = ("wind", "detached_curve_margin", "manifold", "basins", "decision")
@@ -36,13 +36,14 @@ def decision(case: Case, progress: Callable[[str, int, int], None], *, device: s
     from frahm.analysis.linear import without_absorber
     from frahm.analysis.section import FAIL, UNVERIFIED, Work
     from frahm.assessment import accepted, utilisations
+    from frahm.design.tuned import textbook_damper
 
     if device == "bare":
         return _bare(
             case, without_absorber(Work(case)), fatigue(Work(case.without_absorbers())), utilisations, accepted
         )
     steps = [step for step in STEPS if step.run.__name__ not in _ONLY_SHOWN]
-    work = Work(tuned_case(case) if device == "tuned" else case)
+    work = Work(textbook_damper(case, MASS_RATIO) if device == "tuned" else case)
     for number, step in enumerate(steps):
         progress(device, number, len(steps))
         work = work.with_section(step.run(work))

@@ -17,26 +17,6 @@ _EVEN, _AROUND = 301, 61  # points over the range, and around every resonance
 _NARROWEST = 1e-9  # of the frequency: half width of a resonance without damping
 
 
-def tuned_case(case: Case) -> Case:
-    """Case with its first absorber alone, as a tuned mass damper of the same mass in the same place.
-
-    It is tuned for equal peaks of the governing mode, whose mass is felt where the damper hangs; a pipe without
-    absorbers gets one of `MASS_RATIO` where it moves most.
-    """
-    from frahm.design.tuned import equal_peak  # half a second that the page can do without until it is asked for
-
-    pipe = case.pipe
-    mass, position = MASS_RATIO * pipe.mass, None
-    if case.absorbers:
-        mass, position = case.absorbers[0].mass, case.absorbers[0].position
-    moves = float(pipe.modal.displacement(position)[0])
-    ratio, damping_ratio, _ = equal_peak(mass * moves**2 / pipe.mass)
-    omega = ratio * pipe.frequency
-    law = {"kind": "linear", "stiffness": mass * omega**2, "damping": 2 * damping_ratio * mass * omega}
-    damper = {"name": "tuned mass damper", "mass": mass, "law": law, "position": position}
-    return Case(**case.to_dict() | {"absorbers": [damper]})
-
-
 @dataclass(frozen=True)
 class LinearResponse:
     """Amplitudes over the range of operation.
@@ -65,10 +45,11 @@ class LinearResponse:
 
 def tuned_mass_damper_response(case: Case) -> LinearResponse:
     """Response of the pipe with a tuned mass damper of the same mass, in closed form."""
+    from frahm.design.tuned import textbook_damper  # half a second that the page can do without until it is asked for
     from frahm.harmonic_balance.condensation import linear_part
     from frahm.harmonic_balance.linear import linear_exponents
 
-    system = build_system(tuned_case(case))
+    system = build_system(textbook_damper(case, MASS_RATIO))
     damping, stiffness = linear_part(system)
     values = linear_exponents(system)
     grid = _grid(case, ((value.imag, -value.real) for value in values[values.imag > 0]))

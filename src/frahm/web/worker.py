@@ -53,7 +53,7 @@ def main() -> None:
     """Entry of the process."""
     sink = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # nothing a library prints may mix with the answers
-    serve(sys.stdin, sink)
+    serve(os.fdopen(os.dup(sys.stdin.fileno()), encoding="utf-8"), sink)
 
 
 if __name__ == "__main__":

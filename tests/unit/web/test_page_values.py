@@ -1,6 +1,7 @@
 """What the fields say, what the figures draw, and what the competitor does: without a browser."""
 
 import json
+import time
 
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ from frahm import readable
 from frahm.analysis import STEPS, Work, analyse
 from frahm.analysis.largest import FIXED_LIFT
 from frahm.analysis.section import Section
+from frahm.design.tuned import textbook_damper
+from frahm.harmonic_balance import linear_response
 from frahm.loads import operating_range
+from frahm.systems import build_system
 from frahm.web import answers, words
 from frahm.web.controls import controls_of, field_texts, reading, spans
 from frahm.web.deciding import _ONLY_SHOWN
@@ -20,7 +24,7 @@ from frahm.web.live import manifold_lines, responses_at, slow_curve, stability_m
 from frahm.web.looks import EXACT_KINDS, KINDS, MAP_CLASSES, SLOW_KINDS
 from frahm.web.presets import PRESETS
 from frahm.web.scope import DETUNING, PLACE, Axis, has_slow_flow
-from frahm.web.tuned import bare_response, tuned_case, tuned_mass_damper_response
+from frahm.web.tuned import bare_response, tuned_mass_damper_response
 
 CASE = frahm.load_case("jacket-pipe")
 TEXTS = field_texts(CASE, 0.1)
@@ -206,7 +210,7 @@ BRACE = {
     "absorbers": [], "limits": {"amplitude_ratio": 0.05, "stroke": 0.05},
 }  # fmt: skip
 BARE = frahm.load_case(BRACE)
-TUNED = tuned_case(BARE)
+TUNED = textbook_damper(BARE)
 
 
 def drawn(case, at=None, **values):
@@ -303,7 +307,7 @@ def test_the_decision_is_that_of_frahm_run(case):
         assert row["verdict"] == results["acceptance"]["verdict"].upper()
     damped = do("decision", case.to_dict(), {"device": "tuned"}, silent)
     assert damped["worst"]["pipe_peak"] == pytest.approx(
-        analyse(tuned_case(case)).results["worst_case"]["pipe_peak"], rel=1e-9
+        analyse(textbook_damper(case)).results["worst_case"]["pipe_peak"], rel=1e-9
     )
 
 
@@ -455,3 +459,31 @@ def test_presets_draw_the_curves_of_the_paper():
     assert min(points(11, "saddle-node")) > 0
     assert points(11, "hopf")[0] == pytest.approx(-0.016, abs=0.005)
     assert len(points(5, "hopf")) == 2
+
+
+def test_a_sink_with_next_to_no_damping_moves_with_the_slider():
+    for xi2 in (1e-6, 1e-9):
+        case = CASE.with_absorber(xi2=xi2)
+        slow_curve(case)  # compiled
+        began = time.perf_counter()
+        curve = slow_curve(case)
+        assert time.perf_counter() - began < 0.3
+        assert curve.unverified == ()
+
+
+def test_the_tuned_damper_of_the_page_is_that_of_the_report():
+    """One damper, of the mass of all absorbers of a case, in the page as in `frahm run`."""
+    several = BRACE | {"absorbers": [
+        {"name": "a", "mass": "10 kg", "law": {"kind": "cubic", "stiffness": 1e6, "damping": 3.0}},
+        {"name": "b", "mass": "6 kg", "law": {"kind": "cubic", "stiffness": 2e6, "damping": 3.0}},
+    ]}  # fmt: skip
+    case = frahm.load_case(several)
+    damper = textbook_damper(case)
+    assert damper.absorbers[0].mass == pytest.approx(16.0)
+    drawn_curve = tuned_mass_damper_response(case)
+    direct = build_system(damper)
+    at = int(np.argmax(drawn_curve.pipe))
+    W = float(drawn_curve.frequency[at])
+    (X,) = linear_response(direct, np.array([W]))
+    factor = operating_range(case).lift_factor(W)
+    assert drawn_curve.pipe[at] == pytest.approx(factor * abs(direct.output @ X), rel=1e-6)
