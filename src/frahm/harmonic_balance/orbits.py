@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from frahm.compiled import kernel
+from frahm.compiled import kernel, separate_kernel
 from frahm.harmonic_balance.floquet import map_multipliers
 from frahm.harmonic_balance.kernels import fourier_tables, harmonics_of, output_harmonic, sample_count, unknowns
 from frahm.harmonic_balance.newton import correct, resize, tangent
@@ -96,7 +96,7 @@ def describe(pb, va, odd, ys, Hs, columns, multipliers):
         map_multipliers(pb, va, H, odd, W, u, multipliers[i])
 
 
-@kernel
+@separate_kernel
 def between(pb, odd, ya, ta, yb, tb, H, fraction, x_scale, w_scale, y, t):
     """Point y and scaled unit tangent t where the hyperplane across the chord from a to b cuts the branch.
 
@@ -128,7 +128,7 @@ def between(pb, odd, ya, ta, yb, tb, H, fraction, x_scale, w_scale, y, t):
     return ok
 
 
-@kernel
+@separate_kernel
 def _critical(pb, va, odd, H, y, t, rank, multipliers):
     """Test function at a point: dOmega/ds for rank < 0, otherwise log of the rank-th largest multiplier modulus."""
     n = unknowns(pb, H, odd)
@@ -188,7 +188,7 @@ def locate(pb, va, odd, ya, ta, Ha, yb, tb, Hb, rank, x_scale, w_scale, y, t, mu
     return False, H, width
 
 
-@kernel
+@separate_kernel
 def _copy(pb, odd, y, t, H, H_new, y_new, t_new):
     n = unknowns(pb, H, odd)
     m = unknowns(pb, H_new, odd)
