@@ -4,6 +4,10 @@ Compiled code is kept on disk, where it serves installations that cannot be writ
 after the contents of the module and of every frahm module it imports, directly or not, so what is loaded always
 belongs to the sources it is used with. What is kept is run, so it must be this user's own and whole: the folder is the
 user's alone, and every file begins with the hash of what follows.
+
+numba puts the code of everything a kernel calls into the kernel and optimises it again, in every caller up to the top:
+for the large ones that is most of the time it takes. A `separate_kernel` is called where it is instead. What has been
+kept of a caller then belongs to the very code it calls: its name is kept with it, and loaded first.
 """
 
 from __future__ import annotations
@@ -11,6 +15,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
+import importlib
 import logging
 import os
 import pickle
@@ -24,6 +29,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import llvmlite.binding
 import numba
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
@@ -45,8 +51,14 @@ def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function on first use, without the interpreter lock, and keep the machine code on disk."""
     compiled: Any = numba.njit(nogil=True, error_model="numpy", fastmath=_FLAGS)(function)
     root = _cache_root()
-    if root is not None:
-        compiled._cache = KeptKernel(function, root / _digest(function.__module__)[:16])
+    compiled._cache = KeptKernel(function, None if root is None else root / _digest(function.__module__)[:16])
+    return compiled
+
+
+def separate_kernel(function: Callable[..., Any]) -> Any:
+    """As `kernel`, for a large function: its callers call it, and do not take its code in to compile it again."""
+    compiled = kernel(function)
+    compiled._cache.separate = True
     return compiled
 
 
@@ -60,56 +72,102 @@ class KeptKernel(NullCache):
     ----------
     function : callable
         What is compiled.
-    folder : Path
-        Where its files lie; made when there is something to keep.
+    folder : Path or None
+        Where its files lie; made when there is something to keep. None: nothing is kept.
+
+    Attributes
+    ----------
+    separate : bool
+        Whether callers are not to take its code in.
     """
 
-    def __init__(self, function: Callable[..., Any], folder: Path):
+    def __init__(self, function: Callable[..., Any], folder: Path | None):
         self._folder = folder
+        self.separate = False
+        self._function = (function.__module__, function.__qualname__)
         code = function.__code__
         name = re.sub(r"[^\w.]", "", function.__qualname__)
         self._name = f"{function.__module__.rpartition('.')[2]}.{name}-{code.co_firstlineno}"
         self._made_of = (numba.__version__, sys.version_info[:2], hashlib.sha256(code.co_code).hexdigest())
 
     @property
-    def cache_path(self) -> str:
+    def cache_path(self) -> str | None:
         """The folder, for numba's statistics."""
-        return str(self._folder)
+        return None if self._folder is None else str(self._folder)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Compiled code of a signature; None, and a word in the log, if what is there cannot be used."""
         target_context.refresh()
+        if self._folder is None:
+            return None
         key = self._key(sig, target_context.codegen())
         try:
-            content = _own_content(self._path(key))
+            content = _own_content(self._path(self._folder, key))
             if content is None:
                 return None
             _mark_used(self._folder)
-            return CompileResult._rebuild(target_context, *pickle.loads(_unsealed(key, content)))
+            calls, made = pickle.loads(_unsealed(key, content))
+            if not _all_loaded(calls):
+                return None
+            found = CompileResult._rebuild(target_context, *made)
         except FileNotFoundError:
             return None
         except Exception:  # what is whole and can still not be loaded is as good as damaged
             _say(f"A compiled kernel kept in {_cache_root()} is damaged and is compiled again.")
             return None
+        self._keep_apart(sig, found)
+        return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep compiled code; if that cannot be, a word in the log: the code is there all the same."""
-        if data.library.has_dynamic_globals:  # addresses of this process stand in it
+        try:
+            self._save(sig, data)
+        finally:
+            self._keep_apart(sig, data)
+
+    def _save(self, sig: Any, data: Any) -> None:
+        if self._folder is None or data.library.has_dynamic_globals:  # addresses of this process stand in it
             return
         key = self._key(sig, data.codegen)
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
-            write_bytes(self._path(key), _sealed(key, dumps(data._reduce())))
+            content = dumps((_separate_calls(data.library), data._reduce()))
+            write_bytes(self._path(self._folder, key), _sealed(key, content))
             _mark_used(self._folder)
             _remove_unused(self._folder.parent)
         except (OSError, ParameterError, RuntimeError) as error:  # the last: code whose making was interrupted
             _say(f"Compiled kernels cannot be kept in {_cache_root()}: {getattr(error, 'hint', None) or error}")
 
+    def _keep_apart(self, sig: Any, made: Any) -> None:
+        """Give callers a module without code to link: the symbol they find in the running program."""
+        if self.separate:
+            made.library._shared_module = llvmlite.binding.parse_assembly("")
+            _SEPARATE[made.fndesc.mangled_name] = (*self._function, sig)
+
     def _key(self, sig: Any, codegen: Any) -> bytes:
         return repr((self._name, sig, codegen.magic_tuple(), self._made_of)).encode()
 
-    def _path(self, key: bytes) -> Path:
-        return self._folder / f"{self._name}.{hashlib.sha256(key).hexdigest()[:24]}.kernel"
+    def _path(self, folder: Path, key: bytes) -> Path:
+        return folder / f"{self._name}.{hashlib.sha256(key).hexdigest()[:24]}.kernel"
+
+
+_SEPARATE: dict[str, tuple[str, str, Any]] = {}  # by symbol: module, name and signature of a kernel that is there
+
+
+def _separate_calls(library: Any) -> dict[str, tuple[str, str, Any]]:
+    """The separate kernels that compiled code calls, by symbol."""
+    called = (found.name for found in library._final_module.functions if found.is_declaration)
+    return {name: _SEPARATE[name] for name in called if name in _SEPARATE}
+
+
+def _all_loaded(calls: dict[str, tuple[str, str, Any]]) -> bool:
+    """Whether the kernels called are there under the same symbols; they are loaded if need be."""
+    for symbol, (module, name, sig) in calls.items():
+        if symbol not in _SEPARATE:
+            getattr(importlib.import_module(module), name).compile(sig)
+        if symbol not in _SEPARATE:  # compiled again since, under another symbol
+            return False
+    return True
 
 
 def _sealed(key: bytes, payload: bytes) -> bytes:

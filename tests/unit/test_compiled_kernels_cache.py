@@ -2,7 +2,10 @@
 
 import ast
 import os
+import re
 import stat
+import subprocess
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -14,7 +17,9 @@ import frahm
 from frahm import compiled
 
 ROOT = Path(frahm.__file__).parent
-MODULES = sorted(path for path in ROOT.rglob("*.py") if "@kernel" in path.read_text(encoding="utf-8"))
+MODULES = sorted(
+    path for path in ROOT.rglob("*.py") if re.search("@(separate_)?kernel", path.read_text(encoding="utf-8"))
+)
 
 
 def imported(path):
@@ -200,3 +205,51 @@ def test_a_folder_another_process_removes_meanwhile_is_no_failure(kept, monkeypa
     assert old.exists()
     assert not caplog.records
     assert value() == 1
+
+
+APART = """
+import sys
+from frahm.compiled import kernel, separate_kernel
+
+@kernel
+def other(x):
+    return x - 1.0
+
+@separate_kernel
+def inner(x):
+    return 2.0 * x
+
+@kernel
+def outer(x):
+    return inner(x) + 1.0
+
+if "other first" in sys.argv:  # the symbols of what is compiled later are others then
+    other(3.0)
+assert outer(3.0) == 7.0
+calls = "inner" in outer.inspect_llvm().popitem()[1] if not outer.stats.cache_hits else True
+print(sum(outer.stats.cache_hits.values()), sum(inner.stats.cache_hits.values()), calls)
+"""
+
+
+def test_a_separate_kernel_is_called_and_what_calls_it_is_kept_with_its_symbol(tmp_path):
+    script, place = tmp_path / "apart.py", tmp_path / "place"
+    script.write_text(APART)
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(place)}
+
+    def run(*more):
+        done = subprocess.run(
+            [sys.executable, str(script), *more],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=120,
+        )
+        return done.stdout.split()
+
+    assert run() == ["0", "0", "True"]
+    assert run() == ["1", "1", "True"]
+    (kept_inner,) = place.rglob("*.inner-*.kernel")
+    kept_inner.unlink()
+    assert run("other first")[0] == "0"  # compiled again, for the code it would call is gone
+    assert run("other first") == ["1", "1", "True"]

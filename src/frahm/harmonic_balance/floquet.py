@@ -17,7 +17,7 @@ import scipy.linalg
 
 from frahm.absorbers.packed import law_force_and_slopes, polynomial_and_slopes
 from frahm.arrays import Floats
-from frahm.compiled import kernel
+from frahm.compiled import kernel, separate_kernel
 from frahm.harmonic_balance.condensation import linear_part
 from frahm.harmonic_balance.hill import refine_exponents
 from frahm.polynomials import quadratic_factors
@@ -106,7 +106,7 @@ def _variation(K: Floats, C: Floats, push: Floats, feel: Floats, flexibility: Fl
     )
 
 
-@kernel
+@separate_kernel
 def monodromy(pb, va, H, odd, W, u, Phi):
     """Fundamental matrix Phi (2n, 2n) over half a period (odd orbits) or a whole one; states (x, v).
 
@@ -321,7 +321,7 @@ def _taylor_step(va, p, q, h, X, V, Z, Y):
                         V[k + 1, i, c] -= push * Z[_ORDER, e, c]
 
 
-@kernel
+@separate_kernel
 def shifted_eigenvalues(B, out):
     """Eigenvalues of the real matrix B into out: closed form for 4 x 4, LAPACK otherwise."""
     if B.shape[0] != 4:
@@ -362,7 +362,7 @@ def _pair(a, b, out, at):
         out[at + 1] = complex(b / big if big != 0.0 else 0.0, 0.0)
 
 
-@kernel
+@separate_kernel
 def map_multipliers(pb, va, H, odd, W, u, out):
     """Eigenvalues of the half map -Phi(T/2) (odd orbits) or of Phi(T), sorted by descending modulus.
 

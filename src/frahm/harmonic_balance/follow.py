@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from frahm.compiled import kernel
+from frahm.compiled import kernel, separate_kernel
 from frahm.harmonic_balance.kernels import fourier_tables, sample_count, unknowns
 from frahm.harmonic_balance.newton import correct, resize, tangent
 
@@ -99,7 +99,7 @@ def follow(pb, odd, y0, H0, H_most, goal, direction, lo, hi, x_scale, w_scale, l
     return count, TOO_LONG
 
 
-@kernel
+@separate_kernel
 def _store(i, y, t, H, truncation, n, ys, ts, Hs, truncations):
     ys[i] = 0.0
     ts[i] = 0.0

@@ -11,13 +11,13 @@ import math
 
 import numpy as np
 
-from frahm.compiled import kernel
+from frahm.compiled import separate_kernel
 from frahm.harmonic_balance.kernels import element_force, fourier_tables, sample_count, stiffness
 
 _BESIDE = 1e-15  # of Hill's matrix
 
 
-@kernel
+@separate_kernel
 def refine_exponents(pb, H, odd, W, u, multipliers, count):
     """Replace the `count` largest multipliers of the (half) map by those of the complete host, in place.
 
@@ -93,7 +93,7 @@ def refine_exponents(pb, H, odd, W, u, multipliers, count):
                     multipliers[other] = value.conjugate()
 
 
-@kernel
+@separate_kernel
 def _assemble(pb, P, lam, W, step, h, A, D):
     """Hill's matrix A at the exponent lam, and its derivative D, diagonal but for the blocks of one harmonic."""
     r = pb.M11.shape[0]

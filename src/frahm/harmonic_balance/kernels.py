@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from frahm.absorbers.packed import law_force_and_slopes, polynomial_and_slopes
-from frahm.compiled import kernel
+from frahm.compiled import kernel, separate_kernel
 
 _FEWEST_SAMPLES = 200  # per period, for laws that are no polynomials
 
@@ -147,7 +147,7 @@ def fourier_tables(H, odd, N):
     return co, si
 
 
-@kernel
+@separate_kernel
 def element_force(pb, e, H, odd, W, u, co, si, G, p, q):
     """Harmonics of one element's force: G (H + 5,) with Re sum G_k e^{ik tau}, and of its slopes: p, q (2 H + 1,).
 
@@ -224,7 +224,7 @@ def _mean_harmonics(slope, H, step, co, si, p):
         p[m] = complex(re / N, im / N)
 
 
-@kernel
+@separate_kernel
 def residual_and_jacobian(pb, H, odd, W, X, co, si, R, J):
     """Residual R (n,), Jacobian J (n, n + 1) with the derivative by Omega last; returns the relative truncation.
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from frahm.compiled import kernel
+from frahm.compiled import kernel, separate_kernel
 from frahm.continuation.dense import factorise, solve_factorised
 from frahm.harmonic_balance.kernels import (
     fourier_tables,
@@ -19,7 +19,7 @@ from frahm.harmonic_balance.kernels import (
 MOST_UNKNOWNS = 512
 
 
-@kernel
+@separate_kernel
 def correct(pb, H, odd, y, normal, offset, x_scale, w_scale, co, si, J, A, pivots, tolerance, iterations):
     """Correct y = (X, Omega) onto the curve inside the hyperplane normal . (X/x_scale, Omega/w_scale) = offset.
 

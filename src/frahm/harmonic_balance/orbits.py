@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from frahm.compiled import kernel
+from frahm.compiled import kernel, separate_kernel
 from frahm.harmonic_balance.floquet import map_multipliers
 from frahm.harmonic_balance.kernels import fourier_tables, harmonics_of, output_harmonic, sample_count, unknowns
 from frahm.harmonic_balance.newton import correct, resize, tangent
@@ -98,7 +98,7 @@ def describe(pb, va, odd, ys, Hs, columns, multipliers):
         map_multipliers(pb, va, H, odd, W, u, multipliers[i])
 
 
-@kernel
+@separate_kernel
 def between(pb, odd, ya, ta, yb, tb, H, fraction, x_scale, w_scale, y, t):
     """Point y and scaled unit tangent t where the hyperplane across the chord from a to b cuts the branch.
 
@@ -130,7 +130,7 @@ def between(pb, odd, ya, ta, yb, tb, H, fraction, x_scale, w_scale, y, t):
     return ok
 
 
-@kernel
+@separate_kernel
 def _critical(pb, va, odd, H, y, t, rank, multipliers):
     """Test function at a point: dOmega/ds for rank < 0, otherwise log of the rank-th largest multiplier modulus."""
     n = unknowns(pb, H, odd)
@@ -213,7 +213,7 @@ def _close_in(pb, va, odd, a, sa, b, sb, H, lo, middle, hi, rank, x_scale, w_sca
     return half
 
 
-@kernel
+@separate_kernel
 def _copy(pb, odd, y, t, H, H_new, y_new, t_new):
     n = unknowns(pb, H, odd)
     m = unknowns(pb, H_new, odd)
