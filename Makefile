@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 
-.PHONY: setup run reproduce test fuzz lint types bench docs scatter-study where-a-sink-wins examples validation clean
+.PHONY: setup run reproduce test fuzz attack lint types bench docs scatter-study where-a-sink-wins examples validation clean
 
 setup: $(STAMP)
 
@@ -25,6 +25,9 @@ test: setup
 
 fuzz: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m hypothesis --hypothesis-profile search
+
+attack: setup
+	$(BIN)/python tests/attack/run.py
 
 lint: setup
 	$(BIN)/ruff check .

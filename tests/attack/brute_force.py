@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frahm.attractors.regions import states_of
+
 WINDOW = 256  # periods a motion is looked at in the end
 HIGHEST = 64  # multiples of the period at which it may repeat
 _REPEATS = 1e-4  # distance of strobes, in sizes of the motion: what repeats is periodic
@@ -18,18 +20,23 @@ _STRETCH, _ALIGNED, _COUNTED, _APART = 10, 20, 200, 1e-7  # of the Lyapunov expo
 class Ends:
     """How N motions end.
 
-    `strobes` (N, 2n) the last ones; `multiple` (N,) periods after which each repeats, 0 if it does not; `nearly` the
+    `states` (N, 2n) the last ones; `multiple` (N,) periods after which each repeats, 0 if it does not; `nearly` the
     same to 3 %; `looks` (N, 4) largest and mean peak of a period of pipe and first element; `lost` (N,) not finite.
     """
 
-    strobes: np.ndarray
+    states: np.ndarray
     multiple: np.ndarray
     nearly: np.ndarray
     looks: np.ndarray
     lost: np.ndarray
 
     def __getitem__(self, at):
-        return Ends(self.strobes[at], self.multiple[at], self.nearly[at], self.looks[at], self.lost[at])
+        return Ends(self.states[at], self.multiple[at], self.nearly[at], self.looks[at], self.lost[at])
+
+
+def random_states(system, region, count, random):
+    """`count` states of a region."""
+    return states_of(system, {name: random.uniform(lo, hi, count) for name, (lo, hi) in region.items()})
 
 
 def ends(oracle, states, frequency, periods, factor=1.0):

@@ -8,7 +8,7 @@ from brute_force import HIGHEST, scattered, size_of
 from frahm.attractors.extremes import expected_peak
 
 STRETCH, DURATION = 50, 10_000  # periods of a stretch and of the return time, as the documentation states them
-MEMBERS, LENGTH = 64, 10_000  # motions and the periods each is followed
+MEMBERS, LENGTH = 48, 8_000  # motions and the periods each is followed
 _FORGOTTEN = 1000  # periods after which the members know nothing of each other
 _DRAWS, _EACH, _LONG = 80, 8, 20  # samples taken from the long motions: how many, motions and stretches of each
 _BATCH = 1000  # periods carried at once

@@ -125,7 +125,7 @@ def _along(row, values):
 
 def _force(law, z, w):
     """The law's force as its documentation states it."""
-    assert law.stops is None and law.friction is None and law.weight == 0
+    assert (law.stops, law.friction, law.weight) == (None, None, 0)
     if isinstance(law, frahm.TransverseSprings):
         q = heyoka.sqrt(law.length**2 + z * z)
         spring = 2.0 * law.spring_stiffness * z * (1.0 - law.length / q) + 2.0 * law.pretension * z / q

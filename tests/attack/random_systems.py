@@ -34,12 +34,12 @@ def drawn(number):
     ratio = between(random, 0.01, 0.1)
     units = between(random, 1.0, 1e4), between(random, 0.5, 50.0), between(random, 1e-3, 1.0)
     host = _host(random, family, ratio)
-    sinks = [(ratio, _spring(random, family), between(random, 0.03, 0.6))]
+    sinks = [(ratio, _spring(random, family), between(random, 0.03, 0.5))]
     if family == "sinks":
         sinks += [_companion(random, ratio) for _ in range(random.integers(1, 3))]
     system = _assembled(host, sinks, units, f"{family} {number}")
-    middle = 1 + ratio * random.uniform(-3, 3)
-    if random.uniform() < 0.15:
+    middle = 1 + ratio * random.uniform(-2.5, 2)
+    if random.uniform() < 0.1:
         middle = between(random, 0.3, 3.2)
     if family == "softening host":
         middle = random.uniform(0.75, 1.05)
@@ -57,7 +57,7 @@ def between(random, low, high):
 
 def _host(random, family, ratio):
     """Modes (the first of frequency 1), their damping, force and displacement at the sink; the spring to ground."""
-    loss, force = ratio * between(random, 0.02, 1.0), ratio * between(random, 0.05, 3.0)
+    loss, force = ratio * between(random, 0.02, 0.5), ratio * between(random, 0.15, 3.0)
     count = int(random.integers(2, 4)) if family == "modes" else 1
     gaps = [1.0, *(between(random, 1.05, 3.0) for _ in range(count - 1))]
     shape = [1.0, *(random.uniform(-1, 1) for _ in range(count - 1))]
