@@ -84,9 +84,18 @@ class Oracle:
             part = slice(begin, begin + turns)
             strobes[:, part] = samples[FINE::FINE].transpose(2, 0, 1)
             for column, row in enumerate((system.output, first)):
-                displacement = np.abs(np.einsum("tkl,k->lt", samples[1:, 0::2], row))
+                displacement = _peaked(np.abs(np.einsum("tkl,k->lt", samples[:, 0::2], row)))
                 peaks[:, part, column] = displacement.reshape(LANES, turns, FINE).max(axis=2)
         return Watched(lanes.state.T.copy(), strobes, peaks)
+
+
+def _peaked(samples):
+    """Samples (N, K + 1) but the first, those that are larger than their neighbours raised to the parabola's top."""
+    before, here, after = samples[:, :-2], samples[:, 1:-1], samples[:, 2:]
+    bend = before - 2 * here + after
+    is_peak = (here >= before) & (here >= after) & (bend < 0)
+    raised = here - np.where(is_peak, (after - before) ** 2 / (8 * np.where(is_peak, bend, 1.0)), 0.0)
+    return np.concatenate([raised, samples[:, -1:]], axis=1)
 
 
 def _failed(lanes):

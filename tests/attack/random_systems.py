@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import frahm
+from frahm.systems import with_parameters
 
 FAMILIES = ("sink", "stiff sink", "sinks", "softening host", "bistable", "polynomial", "modes")
 
@@ -23,8 +24,8 @@ class Drawn:
     high: float
 
 
-def drawn(number):
-    """The system of a number; families take turns.
+def drawn(number, force=1.0):
+    """The system of a number; families take turns. `force` is a factor on its force.
 
     Made without units, where the first sink has the mass `ratio` and the force ratio (z'' + spring(z) + loss z'), and
     then given a mass, a frequency and a length of its own.
@@ -38,6 +39,7 @@ def drawn(number):
     if family == "sinks":
         sinks += [_companion(random, ratio) for _ in range(random.integers(1, 3))]
     system = _assembled(host, sinks, units, f"{family} {number}")
+    system = with_parameters(system, force=force)
     middle = 1 + ratio * random.uniform(-2.5, 2)
     if random.uniform() < 0.1:
         middle = between(random, 0.3, 3.2)

@@ -34,15 +34,16 @@ def run(arguments):
 
 
 def _jobs(arguments):
-    """Part, name and function of everything asked for."""
+    """Part, name and function of everything asked for; the parts take turns, so that each has its share of the time."""
     first = arguments.first
-    for number in range(first, first + arguments.systems):
-        yield "attractors", number, lambda n=number: [attack(drawn(n))]
-    for number in range(first, first + arguments.worst):
-        yield "worst", number, lambda n=number: [attack_random(drawn(n))]
-    designs = [(member, ratio) for ratio in RATIOS for member in MEMBERS]
-    for asked in designs[: arguments.designs]:
-        yield "designs", asked, lambda d=asked: attack_design(*d)
+    attractors = [("attractors", n, lambda n=n: [attack(drawn(n))]) for n in range(first, first + arguments.systems)]
+    gentle = [(n, drawn(n, GENTLE)) for n in range(first, first + arguments.worst)]
+    worst = [("worst", n, lambda one=one: [attack_random(one)]) for n, one in gentle]
+    asked = [(member, ratio) for ratio in RATIOS for member in MEMBERS][: arguments.designs]
+    designs = [("designs", one, lambda one=one: attack_design(*one)) for one in asked]
+    parts = [part for part in (attractors, worst, designs) if part]
+    order = [((at + 0.5) / len(part), job) for part in parts for at, job in enumerate(part)]
+    return [job for _, job in sorted(order, key=lambda pair: pair[0])]
 
 
 def main():
