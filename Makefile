@@ -28,6 +28,7 @@ fuzz: setup
 
 attack: setup
 	$(BIN)/python tests/attack/run.py
+	cp out/attack/attack.md docs/attack.inc
 
 lint: setup
 	$(BIN)/ruff check .

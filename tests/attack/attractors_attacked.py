@@ -21,8 +21,8 @@ _STRETCHES, _FALLS = 2, 0.02  # of motions that are slow: stretches more, least 
 _MOST = 16  # multiples of the period below which what repeats is no locked beat
 
 
-def attack(drawn, others=OTHERS):
-    """What brute force says against the attractors of a drawn system, as plain data."""
+def attack(drawn, others=OTHERS, rare=True):
+    """What brute force says against the attractors of a drawn system and, if `rare`, their rare peaks; plain data."""
     system, W = drawn.system, drawn.frequency
     found = frahm.find_attractors(system, frequency=W)
     oracle = Oracle(system)
@@ -34,7 +34,7 @@ def attack(drawn, others=OTHERS):
     other = ends(oracle, random_states(system, found.region, others, random), W, found.periods)
     labels, labels_other = labelled(known, oracle, W, found.periods, states), label(known, other)
     labels_other = _later(known, oracle, W, found.periods, other, labels_other)
-    rows = [_row(item, index, found, labels, labels_other) for index, item in enumerate(known)]
+    rows = [_row(item, index, found, labels, labels_other, rare) for index, item in enumerate(known)]
     shifted = _shift([row["paired"] for row in rows], [row["fraction"] for row in rows])
     nudged = 0.0
     if shifted:
@@ -153,7 +153,7 @@ def missed(motions, labels, open_ended):
     return groups
 
 
-def _row(item, index, found, labels, labels_other):
+def _row(item, index, found, labels, labels_other, rare):
     attractor = item.attractor
     hits = round(attractor.basin_fraction * found.samples)
     hits_brute = int(np.count_nonzero(labels_other == index))
@@ -164,7 +164,7 @@ def _row(item, index, found, labels, labels_other):
         "paired": float(np.mean(labels == index)), "brute": hits_brute / len(labels_other),
         "agrees": _agrees(hits, found.samples, attractor.basin_interval[1], hits_brute, len(labels_other)),
     }  # fmt: skip
-    if attractor.kind == "chaotic":
+    if rare and attractor.kind == "chaotic":
         row["expected"] = expected_peaks_attacked(item.oracle, attractor, item.frequency)
     return row
 

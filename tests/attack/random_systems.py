@@ -14,7 +14,7 @@ FAMILIES = ("sink", "stiff sink", "sinks", "softening host", "bistable", "polyno
 
 @dataclass(frozen=True)
 class Drawn:
-    """A system and a frequency of excitation [rad/s]; `low` and `high` bound a range around it."""
+    """A system and a frequency of excitation [rad/s]; `low` and `high` bound a range with the resonance."""
 
     number: int
     family: str
@@ -47,9 +47,9 @@ def drawn(number, force=1.0):
         middle = random.uniform(0.75, 1.05)
     if family == "modes" and random.uniform() < 0.5:
         middle *= host["frequencies"][1]
-    width = ratio * random.uniform(1, 4)
+    low, high = min(middle, 1.0) - 3 * ratio, max(middle, 1.0) + 2 * ratio
     omega = units[1]
-    return Drawn(number, family, system, middle * omega, (middle - width / 2) * omega, (middle + width / 2) * omega)
+    return Drawn(number, family, system, middle * omega, low * omega, high * omega)
 
 
 def between(random, low, high):

@@ -69,13 +69,41 @@ def _mean(values):
 
 def text(counts):
     """The counts as a table in Markdown."""
-    lines = ["| what | count |", "|---|---|"]
-    for part, numbers in counts.items():
-        lines += _lines(part, numbers)
-    return "\n".join(lines) + "\n"
+    found = counts["attractors"]
+    rows = [
+        ("random systems", found["systems"]),
+        ("of these with more than one attractor that random states reach", found["of_several_attractors"]),
+        *((f"{kind} attractors found", number) for kind, number in sorted(found["attractors"].items())),
+        ("attractors with a basin above 2 % that were missed", found["missed"]),
+        ("such motions that were called unsettled", found["called_unsettled"]),
+        ("attractors of another kind than was said", found["of_another_kind"]),
+        *(
+            (f"basin fractions of {kind} motions that agree", _of(share))
+            for kind, share in found["basin_fractions"].items()
+        ),
+        ("share of a sample that brute force labels otherwise, mean", _percent(found["sample_labelled_otherwise"])),
+        (
+            "share that it labels otherwise itself after a nudge of 1e-7, mean",
+            _percent(found["sample_labelled_otherwise_after_a_nudge"]),
+        ),
+        ("levels of rare peaks inside their interval", _of(found["expected_peaks"])),
+        ("the same for other samples of the same motions, mean", _percent(found["expected_peaks"]["of_other_samples"])),
+    ]
+    for part, words in (("worst", "random ranges"), ("designs", "designed devices, as designed or off")):
+        promises = counts[part]
+        rows += [
+            (f"{words} whose worst was asked for", promises["asked"]),
+            ("of these verified", promises["verified"]),
+            ("random motions held against them", promises["motions"]),
+            ("verified worsts passed by more than 1 %", promises["broken"]),
+            ("passed by motions with a basin below the one stated", promises["larger_with_a_small_basin"]),
+        ]
+    return "\n".join(["| what | count |", "|---|---|", *(f"| {name} | {value} |" for name, value in rows)]) + "\n"
 
 
-def _lines(name, value):
-    if not isinstance(value, dict):
-        return [f"| {name.replace('_', ' ')} | {'-' if value is None else value} |"]
-    return [line for key, item in value.items() for line in _lines(f"{name}: {key}", item)]
+def _of(share):
+    return f"{share['held']} of {share['of']}"
+
+
+def _percent(share):
+    return "-" if share is None else f"{100 * share:.2g} %"
