@@ -22,7 +22,7 @@ from frahm.systems import build_system
 from oracle import Oracle
 
 CASES = Path(__file__).parents[1] / "cases"
-MEMBERS = ("jacket-pipe", "jacket-pipe-elastic", "tube", "table", "chimney", "stiff", "calm", "brace")
+MEMBERS = ("stiff", "jacket-pipe", "calm", "chimney", "brace", "table", "tube", "jacket-pipe-elastic")
 RATIOS = (0.01, 0.02, 0.05)
 SCATTER = Scatter(pipe_frequency=0.05)
 LARGER = 1.01  # what is larger by less is as large
