@@ -16,7 +16,7 @@ OTHERS = 400  # random states besides those of the sample
 _CHAOTIC = 2e-3  # growth per period that the documentation calls chaos
 _CONFIRM = 200  # periods after which a periodic attractor is still itself
 _LOOKS = 16  # windows over which a modulated or chaotic attractor is seen
-_MOVED = 1e-7  # of a state, the tolerance of the package: what moves the end of a motion from near a boundary
+_MOVED = 1e-7  # of a state: what moves the end of a motion from near a boundary
 _STRETCHES, _FALLS = 2, 0.02  # of motions that are slow: stretches more, least fall of the distance in each
 _MOST = 16  # multiples of the period below which what repeats is no locked beat
 
