@@ -43,7 +43,8 @@ def expected_peaks_attacked(oracle, attractor, frequency):
         low, high = getattr(attractor, f"{name}_expected_interval")
         rows[name] = {
             "level": level, "expected": getattr(attractor, f"{name}_expected"), "interval": [low, high],
-            "holds": bool((1 - _ERROR) * low <= level <= (1 + _ERROR) * high), "coverage": coverage(peaks[..., column], level),
+            "holds": bool((1 - _ERROR) * low <= level <= (1 + _ERROR) * high),
+            "coverage": coverage(peaks[..., column], level),
         }  # fmt: skip
     return rows
 
