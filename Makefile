@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.set-up
 
-.PHONY: setup run reproduce test bounds fuzz lint types bench docs scatter-study where-a-sink-wins examples validation clean
+.PHONY: setup run reproduce test bounds fuzz attack lint types bench docs scatter-study where-a-sink-wins examples validation clean
 
 setup: $(STAMP)
 
@@ -28,6 +28,10 @@ bounds:
 
 fuzz: setup
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m hypothesis --hypothesis-profile search
+
+attack: setup
+	$(BIN)/python tests/attack/run.py
+	cp out/attack/attack.md docs/attack.inc
 
 lint: setup
 	$(BIN)/ruff check .

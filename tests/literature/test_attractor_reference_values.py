@@ -89,7 +89,7 @@ def test_where_large_starts_end(start, peak):
     [
         (0.970, 31.3, 31.5, {"periodic"}),
         (0.9729, 51.5, 52.5, {"quasi-periodic", "chaotic"}),
-        (0.98, 4.0, 5.2, {"quasi-periodic", "chaotic"}),
+        (0.98, 3.8, 5.2, {"quasi-periodic", "chaotic"}),
         (1.0, 2.1, 2.6, {"quasi-periodic", "chaotic"}),
         (1.05, 1.5, 1.9, {"quasi-periodic", "chaotic"}),
     ],
@@ -99,7 +99,8 @@ def test_what_the_optimum_does_from_rest(frequency, low, high, kinds):
     reached = from_rest(frahm.find_attractors(OPTIMUM, frequency=frequency, samples=16, region=region))
     assert reached.kind in kinds
     # The bounds were drawn for the median of windows of 1000 periods: chaos reaches further in the 8000 of `pipe_peak`.
-    states = reached.representative_state * np.linspace(0.9999, 1.0001, 9)[:, None]
+    # At 0.98 the median of 160 windows is 4.05 and that of nine scatters by 0.3, so that the bound there is wider.
+    states = reached.representative_state * np.linspace(0.9999, 1.0001, 99)[:, None]
     windows = integrate_batch(OPTIMUM, frequency=frequency, initial_states=states, periods=1000, window=1000).pipe_peak
     assert low < np.median(windows) < high
     assert np.median(windows) <= reached.pipe_peak * 1.001

@@ -217,19 +217,24 @@ def _strobe(system: System, frequency: float) -> Stroboscope:
 
 
 def _alike(a: Attractor, b: Attractor) -> bool:
-    """Whether rms and peaks of two motions agree within 2 % of the peak, or peaks as far as they are known."""
+    """Whether rms and rare peaks of two motions agree within 2 % of the peak, or these as far as they are known."""
     pipe, stroke = max(a.pipe_peak, b.pipe_peak), max(a.relative_peak, b.relative_peak)
     return bool(
         abs(a.pipe_rms - b.pipe_rms) <= _ALIKE * pipe
         and abs(a.relative_rms - b.relative_rms) <= _ALIKE * stroke
-        and _peaks_agree(a.pipe_peak, a.pipe_peak_expected_interval, b.pipe_peak, b.pipe_peak_expected_interval)
-        and _peaks_agree(
-            a.relative_peak, a.relative_peak_expected_interval, b.relative_peak, b.relative_peak_expected_interval
+        and _levels_agree(
+            a.pipe_peak_expected, a.pipe_peak_expected_interval, b.pipe_peak_expected, b.pipe_peak_expected_interval
+        )
+        and _levels_agree(
+            a.relative_peak_expected,
+            a.relative_peak_expected_interval,
+            b.relative_peak_expected,
+            b.relative_peak_expected_interval,
         )
     )
 
 
-def _peaks_agree(a: float, expected_a: tuple[float, float], b: float, expected_b: tuple[float, float]) -> bool:
-    """Whether two peaks agree within 2 %, or within the scatter of a largest value that no motion repeats."""
-    scatter = [high - low for low, high in (expected_a, expected_b) if np.isfinite(high - low)]
+def _levels_agree(a: float, interval_a: tuple[float, float], b: float, interval_b: tuple[float, float]) -> bool:
+    """Whether two levels of rare peaks agree within 2 %, or as far as they are known."""
+    scatter = [high - low for low, high in (interval_a, interval_b) if np.isfinite(high - low)]
     return abs(a - b) <= max(_ALIKE * max(a, b), sum(scatter))

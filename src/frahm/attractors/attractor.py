@@ -36,11 +36,11 @@ class Attractor:
         repeat, that is all of eight motions of 1000 periods each; a longer time may show a larger one, see
         `pipe_peak_expected`. Infinite for an escaping motion, NaN for one that cannot be integrated.
     pipe_peak_expected, relative_peak_expected : float
-        Level [m] that |x| or |z| exceeds once, on average, in `return_time`: that of a generalised Pareto distribution
-        fitted to the highest peaks of stretches of 50 periods. The peak itself for a periodic motion, NaN for an
-        unsettled one.
+        Level [m] that |x| or |z| exceeds once, on average, in `return_time`: the quantile of the peaks of stretches of
+        50 periods, of motions followed for 64 000 periods in all or longer. The peak itself for a periodic motion, NaN
+        for an unsettled one.
     pipe_peak_expected_interval, relative_peak_expected_interval : tuple of float
-        95 % interval of it [m] (bootstrap).
+        95 % interval of it [m], of no assumed distribution; infinite above where 256 000 periods bound it not.
     return_time : float
         10 000 periods of the forcing [s].
     pipe_rms, relative_rms : float

@@ -8,7 +8,7 @@ that left are counted.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +26,7 @@ _STARTED = 2 * MEMBERS
 _STATIONARY, BELONGS, INSIDE = 0.8, 0.5, 0.9  # shares of strobes that must lie where others have been
 _LEAST_REACH = 0.25  # in standard deviations of the strobes: clouds nearer to each other than this count as one
 _QUERIES = 100  # strobes of a motion that are looked at
+_LEAST_BLOCKS, _MOST_ROUNDS = 64, 32  # of WATCH periods of each member, and rounds of them: for peaks that are rare
 _STRETCHES, _STRETCH, _HIGHEST = 48, 251, 17  # of a drift: stretches, their periods (a prime), strobes at their ends
 
 
@@ -101,15 +102,9 @@ def confirmed(strobe: Stroboscope, strobes: Floats, orbits: Sequence[Orbit]) -> 
     """Cloud of the attractor a motion with these strobes (K, 2n) is on, or None if most motions started there leave."""
     starts = strobes[np.linspace(len(strobes) // 2, len(strobes) - 1, _STARTED).astype(int)]
     stayed = strobe.run(starts, STAY)
-    good = stayed.codes == 0
-    states, stretches, later = stayed.states, [], []
-    for _ in range(WATCH // STRETCH):
-        seen = strobe.run(states, STRETCH, window=STRETCH, strobes=STRETCH)
-        good &= seen.codes == 0
-        states = np.where(good[:, None], seen.states, starts)  # what is lost is not carried on into infinity
-        stretches.append(seen.seen)
-        later.append(seen.strobes)
-    watched = np.concatenate(later, axis=1)
+    alive = stayed.codes == 0
+    stretches, watched, states, good = _watched(strobe, np.where(alive[:, None], stayed.states, starts))
+    good &= alive
     tree, scale, reach = _tree(strobes, 2.0, 0.95)
     for orbit in orbits:
         good &= ~orbit.contains(states)
@@ -122,9 +117,44 @@ def confirmed(strobe: Stroboscope, strobes: Floats, orbits: Sequence[Orbit]) -> 
     points = np.concatenate([strobes, members.reshape(-1, strobes.shape[1])])
     tree, scale, reach = _tree(points, 3.0, 0.99)
     return Cloud(
-        frozen(scale), tree, reach, members, frozen(np.stack(stretches, axis=1)[on]),
+        frozen(scale), tree, reach, members, frozen(stretches[on]),
         lyapunov(strobe, members[:, -1]), _STARTED * (STAY + WATCH), left,
     )  # fmt: skip
+
+
+def peaks_of_long_motions(
+    strobe: Stroboscope, cloud: Cloud, orbits: Sequence[Orbit], enough: Callable[[Floats], bool]
+) -> Floats:
+    """Peaks (B, 20, 2) of pipe and first element over the stretches of B blocks of 1000 periods on an attractor.
+
+    The members are followed on until `enough` says so of the peaks of either, or 32 blocks each are seen; what leaves
+    the attractor in a block is followed no longer, and that block is not counted.
+    """
+    blocks, states = cloud.stretches[:, :, [0, 3]], cloud.members[:, -1]
+    for _ in range(1, _MOST_ROUNDS):
+        if len(blocks) >= _LEAST_BLOCKS and enough(blocks[..., 0]) and enough(blocks[..., 1]):
+            break
+        stretches, strobes, states, good = _watched(strobe, states)
+        for orbit in orbits:
+            good &= ~orbit.contains(states)
+        good[good] = cloud.share(strobes[good, -WATCH // 2 :]) >= BELONGS
+        if not np.any(good):
+            break
+        blocks, states = np.concatenate([blocks, stretches[good][:, :, [0, 3]]]), states[good]
+    return blocks
+
+
+def _watched(strobe: Stroboscope, states: Floats) -> tuple[Floats, Floats, Floats, np.ndarray]:
+    """Motions over 1000 periods: what they show over stretches of 50, strobes, last states, and which are not lost."""
+    starts, good = states, np.ones(len(states), dtype=bool)
+    stretches, strobes = [], []
+    for _ in range(WATCH // STRETCH):
+        seen = strobe.run(states, STRETCH, window=STRETCH, strobes=STRETCH)
+        good &= seen.codes == 0
+        states = np.where(good[:, None], seen.states, starts)  # what is lost is not carried on into infinity
+        stretches.append(seen.seen)
+        strobes.append(seen.strobes)
+    return np.stack(stretches, axis=1), np.concatenate(strobes, axis=1), states, good
 
 
 def _tree(points: Floats, factor: float, quantile: float) -> tuple[cKDTree, Floats, float]:

@@ -1,9 +1,8 @@
-"""The largest displacement that a motion which never repeats reaches in a stated time, from shorter stretches of it.
+"""The largest displacement that a motion which never repeats reaches in a stated time, from stretches of a longer one.
 
-What peaks over equal stretches exceed a high threshold by follows the generalised Pareto distribution
-P(excess <= y) = 1 - (1 - k y / alpha)^(1/k), whose parameters come from two probability-weighted moments: Hosking and
-Wallis, Technometrics 29 (1987) 339-349. Only the highest peaks enter: chaos that bursts has two kinds of stretches, and
-the quiet ones say nothing of how large the bursts are.
+What one in so many equal stretches exceeds is a quantile of their peaks, and is read off them: of n independent ones a
+binomial number lies above it, whatever their distribution is. Neighbouring stretches are not independent where chaos
+bursts; how much their number counts for is seen from how unevenly high peaks fall to blocks of them.
 """
 
 from __future__ import annotations
@@ -11,20 +10,18 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.stats import binom, chi2
 
 from frahm.arrays import Floats
 
 DURATION = 10_000  # periods of the forcing: three and a half hours of the pipe of the paper
-HIGHEST = 3 / 16  # share of the peaks that enters
-_RUN = 5  # neighbouring stretches that are drawn together: what lasts longer than one of them stays together
-_DRAWS, _SHARE = 1000, 5 / 8  # of the bootstrap: draws, and runs in each of them over all runs
+_HIGH = 0.05  # share of the peaks whose spread over the blocks is looked at
 _TAIL = 0.025
-_FLAT = 1e-6  # shape k below which the distribution is exponential
+_FLAT = 1e-9  # of the largest peak: what differs by less is one
 
 
 class Level(NamedTuple):
-    """Level exceeded once, on average, in a stated time, and its 95 % interval."""
+    """Level exceeded once, on average, in a stated time, and its 95 % interval: open above if too little is seen."""
 
     value: float
     interval: tuple[float, float]
@@ -35,39 +32,49 @@ def expected_peak(peaks: Floats, stretches: float) -> Level:
 
     Parameters
     ----------
-    peaks : ndarray, shape (m, S)
-        Peaks of m motions over S consecutive stretches each, S being 5 at least.
+    peaks : ndarray, shape (B, S)
+        Peaks over blocks of S consecutive stretches each.
     stretches : float
-        How many stretches the stated time has, more than 16/3.
+        How many stretches the stated time has.
 
     Returns
     -------
     Level
-        The interval is that of a bootstrap over runs of five stretches that draws five eighths of them: drawing all
-        gives intervals that are too short for so few excesses.
+        The interval lies between two of the peaks: as many exceed its ends as a binomial number with the stretches'
+        effective number leaves possible. Its upper end is infinite where the stretches are too few to exclude that
+        none has reached the level.
     """
-    runs = peaks[:, : peaks.shape[1] // _RUN * _RUN].reshape(-1, _RUN)
-    drawn = np.random.default_rng(0).integers(len(runs), size=(_DRAWS, int(np.ceil(_SHARE * len(runs)))))
-    levels = return_level(runs[drawn].reshape(_DRAWS, -1), stretches)
-    low, high = np.quantile(levels, [_TAIL, 1 - _TAIL])
-    value = float(return_level(peaks.reshape(1, -1), stretches)[0])
-    return Level(value, (min(float(low), value), max(float(high), value)))
+    ordered = np.sort(peaks.ravel())[::-1]
+    value = float(np.interp(ordered.size / stretches, np.arange(ordered.size) + 0.5, ordered))
+    if ordered[0] - ordered[-1] <= _FLAT * ordered[0]:
+        return Level(value, (value, value))
+    fewest, most = _above(peaks, stretches)
+    low = float(ordered[min(most, ordered.size - 1)])
+    high = float(ordered[fewest - 1]) if fewest else float("inf")
+    return Level(value, (min(low, value), max(high, value)))
 
 
-def return_level(peaks: Floats, stretches: float) -> Floats:
-    """Level exceeded by one in `stretches` of the peaks (N, m), by the fit to each of the N samples, shape (N,)."""
-    m = peaks.shape[1]
-    count = max(int(HIGHEST * m), 2)
-    ordered = np.sort(peaks, axis=1)
-    threshold = ordered[:, -count - 1]
-    excess = ordered[:, -count:] - threshold[:, None]
-    a0 = np.mean(excess, axis=1)
-    a1 = np.mean(excess * (count - 1 - np.arange(count)) / (count - 1), axis=1)
-    flat = a0 <= 1e-12 * np.abs(threshold)
-    ratio = np.where(flat, 3.0, a0 / np.where(flat, 1.0, a0 - 2 * a1))
-    k = np.where(np.abs(ratio - 2) < _FLAT, _FLAT, ratio - 2)
-    alpha = 2 * a1 * ratio
-    return np.asarray(threshold + alpha / k * (1 - (stretches * count / m) ** -k))
+def enough(peaks: Floats, stretches: float) -> bool:
+    """Whether peaks (B, S) bound the level from above; see `expected_peak`."""
+    return bool(np.ptp(peaks) <= _FLAT * np.max(peaks) or _above(peaks, stretches)[0] > 0)
+
+
+def _above(peaks: Floats, stretches: float) -> tuple[int, int]:
+    """Fewest and most of the peaks that may lie above the level."""
+    unevenness = _unevenness(peaks)
+    count = int(peaks.size / unevenness)
+    fewest, most = binom.ppf([_TAIL, 1 - _TAIL], count, 1 / stretches)
+    return int(np.ceil(fewest * unevenness)), int(np.ceil((most + 1) * unevenness)) - 1
+
+
+def _unevenness(peaks: Floats) -> float:
+    """Variance of the number of high peaks in a block over that of independent ones, 1 at least."""
+    share = max(_HIGH, 1 / peaks.size)
+    high = np.count_nonzero(peaks > np.quantile(peaks, 1 - share), axis=1)
+    mean = float(np.mean(high))
+    if not mean > 0:
+        return 1.0
+    return max(1.0, float(np.var(high, ddof=1)) / (mean * (1 - share)))
 
 
 def poisson_interval(count: int, exposure: float) -> tuple[float, float]:

@@ -11,8 +11,8 @@ import numpy as np
 
 from frahm.arrays import Floats, frozen
 from frahm.attractors.attractor import Attractor, AttractorSet, clopper_pearson
-from frahm.attractors.clouds import STRETCH, Cloud
-from frahm.attractors.extremes import DURATION, Level, expected_peak, poisson_interval
+from frahm.attractors.clouds import STRETCH, Cloud, peaks_of_long_motions
+from frahm.attractors.extremes import DURATION, Level, enough, expected_peak, poisson_interval
 from frahm.attractors.modulation import beat_frequency
 from frahm.attractors.orbits import Orbit
 from frahm.attractors.regions import Region, checked_region, default_region, sample_region
@@ -177,7 +177,7 @@ def describe(
             looks = _orbit_looks(settling.strobe, first)
         else:
             clouds = [item for item in (settling.known[i] for i in group) if isinstance(item, Cloud)]
-            looks = _cloud_looks(settling.strobe, clouds)
+            looks = _cloud_looks(settling, clouds)
         found.append((group, Attractor(**_where(settling.strobe), **looks, **chance, from_rest=rest in group)))
     found += [([], lost) for lost in _unsettled(settling.strobe, settled, counted, total)]
     return sorted(found, key=lambda item: -np.nan_to_num(item[1].pipe_peak, nan=-1.0, posinf=np.inf))
@@ -245,15 +245,15 @@ def _orbit_looks(strobe: Stroboscope, orbit: Orbit) -> dict[str, Any]:
     }
 
 
-def _cloud_looks(strobe: Stroboscope, clouds: Sequence[Cloud]) -> dict[str, Any]:
-    members = clouds[0].members
+def _cloud_looks(settling: Settling, clouds: Sequence[Cloud]) -> dict[str, Any]:
+    strobe, members = settling.strobe, clouds[0].members
     exponent = clouds[0].exponent
     beat = beat_frequency(strobe, members)
-    stretches = np.concatenate([cloud.stretches for cloud in clouds])
+    peaks = peaks_of_long_motions(strobe, clouds[0], settling.orbits, lambda seen: enough(seen, DURATION / STRETCH))
     return {
         "kind": "chaotic" if exponent.chaotic else "quasi-periodic",
         **_sizes(np.concatenate([cloud.seen for cloud in clouds])),
-        **_expected(strobe, stretches[:, :, 0], stretches[:, :, 3]),
+        **_expected(strobe, peaks[..., 0], peaks[..., 1]),
         "period_multiple": 0,
         "beat_period": 2 * np.pi / beat,
         "frequencies": (strobe.frequency, beat),

@@ -32,6 +32,7 @@ _WELL_CONDITIONED, _BLIND = 1e6, 1e12  # condition numbers: of eigenvectors that
 _SMALLEST = 1e-6  # radius, in sizes of the orbit, that the linear theory alone may claim
 _DIFFERENCE = 1e-5  # of the size of a motion: steps of central differences, of relative error about 1e-7 here
 _FIRST_STEPS = 0.5  # in sizes of the motion: of Newton's method; later ones must shrink
+_SETTLED = 1e-4  # in sizes of the orbit: how far off the tolerance may leave a motion that has settled
 _ONE = 1e-6  # in sizes of the orbit: states of refined orbits nearer than this are one state
 
 
@@ -69,6 +70,11 @@ class Orbit:
     def passes(self, state: Floats, size: Floats) -> bool:
         """Whether the refined orbit through `state` is this one; `size` (2n,) as of `orbit_size`."""
         return bool(np.min(np.max(np.abs((self.states - state) / size), axis=1)) < _ONE)
+
+    def holds(self, states: Floats, size: Floats) -> bool:
+        """Whether all the states (N, 2n) are on it, as far as a motion that has settled can be: none comes nearer."""
+        apart = np.max(np.abs(states[:, None] - self.states) / size, axis=2)
+        return bool(np.max(np.min(apart, axis=1)) < _SETTLED)
 
     def distance(self, states: Floats) -> Floats:
         """Distance of states (N, 2n) from the orbit at whole periods, in the norms of the balls over their radii."""

@@ -10,7 +10,7 @@ HIGHEST_MULTIPLE = 64
 _NEARLY = 0.02  # distance of strobes, in sizes of the motion, that nearly repeat
 _NEARER = 0.5  # of the distance after a smaller number: a motion on a doubled orbit also nearly repeats halfway
 _MOST = 6
-_LESS, _NOTHING = 0.75, 1e-6  # of an earlier distance: what shrinks; in sizes of the motion: what has shrunk to nothing
+_LESS, _NOTHING = 0.75, 1e-4  # of an earlier distance: what shrinks; in sizes of the motion: what has shrunk to nothing
 
 
 def repeats(strobes: Floats) -> list[list[int]]:

@@ -198,6 +198,16 @@ class Settling:
         watched.keep(left)
         watched.history = np.concatenate([watched.history, strobes], axis=1)[:, -2 * WINDOW * BLOCK :]
         watched.keep(self._drop_inside_balls(result, watched.active))
+        self._drop_passed_through_balls(result, watched)
+
+    def _drop_passed_through_balls(self, result: Settled, watched: _Watched) -> None:
+        """Done is what was in a ball of an orbit at any of its periods: one of its balls may be too small to be met."""
+        for index, attractor in enumerate(self.known):
+            if len(watched.active) and isinstance(attractor, Orbit):
+                last = watched.history[:, -attractor.multiple :]
+                inside = attractor.contains(last.reshape(-1, last.shape[2])).reshape(last.shape[:2])
+                _label(result, watched.active[inside.any(axis=1)], index)
+                watched.keep(watched.active[result.labels[watched.active] == UNLABELLED])
 
     def _carry(
         self, result: Settled, active: np.ndarray, periods: int, strobes: int, bound: float
@@ -348,8 +358,9 @@ class Settling:
             return None
         orbit = self.known[index]
         assert isinstance(orbit, Orbit)
-        distance = orbit.distance(strobes)
-        return index if np.max(distance[-HIGHEST_MULTIPLE:]) < np.min(distance[:HIGHEST_MULTIPLE]) else None
+        distance, last = orbit.distance(strobes), strobes[-HIGHEST_MULTIPLE:]
+        nearer = np.max(distance[-HIGHEST_MULTIPLE:]) < np.min(distance[:HIGHEST_MULTIPLE])
+        return index if nearer or orbit.holds(last, orbit_size(self.strobe, strobes)) else None
 
 
 def known_orbits(strobe: Stroboscope, states: Sequence[Floats]) -> list[Orbit | None]:

@@ -64,7 +64,7 @@ def test_orbits_whose_strobes_pass_near_each_other_are_told_apart():
     system = pipe(
         1.2109138, (0.0435332698, 755.4827848, 0.00342138370), (0.0161976354, 263.0273496, 0.00353236857)
     )  # fmt: skip
-    found = frahm.find_attractors(system, frequency=OMEGA - 0.1051859525, samples=200)
+    found = frahm.find_attractors(system, frequency=OMEGA - 0.1051859525, samples=400)
     assert not any(a.kind == "unsettled" for a in found)
     shares = {round(a.pipe_peak, 6): a.basin_fraction for a in found if a.period_multiple == 3}
     assert shares[0.006132] == pytest.approx(0.16, abs=0.08)
