@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from frahm.case import Absorber, Case, LinearLaw
+from frahm.case import Case
 from frahm.errors import ParameterError, check_number
 
 
@@ -73,7 +73,7 @@ def textbook_damper(case: Case, mass_ratio: float = 0.02) -> Case:
         raise ParameterError("absorbers[0].position", place, "a section that the governing mode moves")
     ratio, damping_ratio, _ = equal_peak(mass * moves**2 / pipe.mass)
     omega = ratio * pipe.frequency
-    law = LinearLaw(stiffness=mass * omega**2, damping=2 * damping_ratio * mass * omega)
+    law = {"kind": "linear", "stiffness": mass * omega**2, "damping": 2 * damping_ratio * mass * omega}
     given: dict[str, Any] = {"name": "tuned mass damper", "mass": mass, "law": law}
-    damper = Absorber(**(given if place is None else given | {"position": place}))
+    damper = given if place is None else given | {"position": place}  # the case says what is wrong with it
     return Case(**({key: getattr(case, key) for key in case.model_fields_set} | {"absorbers": (damper,)}))

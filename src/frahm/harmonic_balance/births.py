@@ -24,6 +24,7 @@ MARGIN = 1e-6  # of the force: nearer to a birth it is not decided on which side
 _STEPS = np.array([3e-3, 3e-4])  # of ln a and of Omega, over which slopes are first compared
 _LONGEST = np.array([0.2, 0.02])  # of a step
 _ITERATIONS = 30
+_FINEST = 1 / 64  # of a step along places where lambda turns over a: at shorter ones it has ceased to turn
 _SHARES = np.geomspace(0.7, 1.35, 28)  # of a, over which lambda is looked at
 _CLOSE = 0.1  # |ln lambda^2| up to which an extreme that was not located is told
 _FIRST_HARMONICS = 5
@@ -52,6 +53,11 @@ def seeds_beside(search: Search, extreme: Extreme) -> list[Seed]:
     for turn in _turns(search, extreme):
         place = _with_harmonics(search, extreme, turn)
         located = None if place is None else _extreme(search, extreme, place)
+        if place is not None and located is None:
+            place, none = _downhill(search, extreme, place)
+            if none:
+                continue
+            located = _extreme(search, extreme, place)
         if located is not None:
             place, bend = located
             seeds += _on_ring(search, extreme, place, bend) if bend else []
@@ -120,6 +126,50 @@ def _extreme(search: Search, start: Extreme, place: _Place) -> tuple[_Place, flo
         B += np.outer(there.slopes - place.slopes - B @ step, step) / float(step @ step)
         place = there
     return None
+
+
+def _downhill(search: Search, start: Extreme, place: _Place) -> tuple[_Place, bool]:
+    """From a place where lambda turns over a, along such places, towards its extreme over both until it is passed.
+
+    Returns the last place, and whether there is no birth of a small ring: lambda goes past 1 by more than `_CLOSE`, or
+    it ceases to turn over a, a minimum and a maximum having met, before it is extreme.
+    """
+    way = -start.sign * math.copysign(1.0, place.slopes[1])
+    share = 1.0
+    for _ in range(2 * _ITERATIONS):
+        length = share * min(0.2 * _CLOSE / max(abs(float(place.slopes[1])), 1e-300), float(_LONGEST[1]))
+        there = _with(search, start, place, np.array([0.0, way * length]))
+        there, gone = (None, False) if there is None else _turn_near(search, start, there)
+        if there is None:
+            if share < _FINEST:
+                return place, gone
+            share /= 2
+            continue
+        if start.sign * (there.size - place.size) >= 0:
+            return place, False
+        place = there
+        if start.sign * place.size < -_CLOSE:
+            return place, True
+    return place, False
+
+
+def _turn_near(search: Search, start: Extreme, place: _Place) -> tuple[_Place | None, bool]:
+    """Where lambda turns over a near a place, at its frequency, by Newton's method; and whether it does not turn."""
+    for _ in range(_ITERATIONS):
+        side = _with(search, start, place, np.array([_STEPS[1], 0.0]))
+        if side is None:
+            return None, False
+        bend = float(side.slopes[0] - place.slopes[0]) / float(_STEPS[1])
+        if start.sign * bend <= 0:
+            return None, True
+        step = float(np.clip(-place.slopes[0] / bend, -0.5 * _LONGEST[0], 0.5 * _LONGEST[0]))
+        if abs(step) < _STEPS[1]:
+            return place, False
+        there = _with(search, start, place, np.array([step, 0.0]))
+        if there is None:
+            return None, False
+        place = there
+    return None, False
 
 
 def _unknowns(search: Search, start: Extreme) -> Floats:

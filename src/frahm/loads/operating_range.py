@@ -285,7 +285,11 @@ def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
         basis.append(f"No wind of the site excites the mode: the strongest are looked at, {lo:.4g} ... {hi:.4g} m/s.")
     lo, hi, shortened = _ascending(law, lo, hi, min(max(speed, lo), hi))
     if shortened:
-        basis.append(f"Beyond {lo:.4g} ... {hi:.4g} m/s the shedding frequency falls with the wind: not looked at.")
+        doubts = (
+            *doubts,
+            f"Beyond {lo:.4g} ... {hi:.4g} m/s the shedding frequency falls with the wind: winds there can excite the"
+            " pipe, too, and were not looked at.",
+        )
     found = _over(law, vortex_shedding(case).lift, (lo, hi), case.pipe.frequency, site, tuple(basis), True)
     return replace(found, doubts=(*doubts, *_left_out(case, law, most_mass_ratio)))
 
@@ -438,7 +442,7 @@ def _factor(law: WindExcitation, lift: float, lo: float, hi: float) -> Floats:
 
     if lift == 0:
         return np.zeros((0, 5))
-    edges = np.concatenate([[lo], law.kinks(lo, hi), [hi]])
+    edges = np.concatenate([[lo], [U for U in law.kinks(lo, hi) if lo < U * (1 - _SAME) < U * (1 + _SAME) < hi], [hi]])
     rows = []
     for a, b in pairwise(edges):
         U = np.linspace(a, b, _KNOTS)
