@@ -45,7 +45,7 @@ def other_motions_at(case: Case, ratio: float, most_mass_ratio: float = 0.0) -> 
     """
     found, off = [], Disturbance(pipe_frequency=ratio, lock_in=False)
     for other, part in other_modes(case, most_mass_ratio):
-        lo, hi = (ratio * W for W in part.frequency)
+        lo, hi = (ratio * W for W in part.asked)
         wide = part.stretched(min(ratio, 1.0), max(ratio, 1.0))
         if max(lo, wide.frequency[0]) < min(hi, wide.frequency[1]):
             changed = off.of(build_system(other))

@@ -79,7 +79,7 @@ class Problem:
         within = _range(case, settings, objective)
         if within.over_wind:
             axis = within.stretched(*_frequencies(settings)) if within.moves else within
-            windows = Windows(within.frequency, within.frequency, within.moves, axis, within)
+            windows = Windows(within.asked, within.asked, within.moves, axis, within)
         else:
             windows = Windows(wide if moving else within.frequency, wide, moving, nominal=within)
         conditions = disturbances(
@@ -253,4 +253,11 @@ def _frequencies(settings: DesignSettings) -> tuple[float, float]:
 
 
 def _lift(axis: OperatingRange) -> Lift:
-    return np.vectorize(axis.lift_factor, otypes=[float])
+    """Lift over that at the wind of the case; none at frequencies that no wind of the site sheds at."""
+    first, last = axis.frequency
+
+    def factor(W: float) -> float:
+        near = 1e-9 * W
+        return axis.lift_factor(W) if first - near <= W <= last + near else 0.0
+
+    return np.vectorize(factor, otypes=[float])

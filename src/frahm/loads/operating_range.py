@@ -56,6 +56,8 @@ class OperatingRange:
         Whether the range was made from the natural frequencies, so that it moves with them.
     doubts : tuple of str
         Sentences that say why nothing found over the range is verified; empty if it is what the site asks for.
+    band : (float, float) or None
+        Frequencies [rad/s] that are asked about where the site has the winds for them; None: those of the range.
     """
 
     frequency: tuple[float, float]
@@ -67,6 +69,13 @@ class OperatingRange:
     basis: tuple[str, ...] = ()
     moves: bool = False
     doubts: tuple[str, ...] = ()
+    band: tuple[float, float] | None = None
+
+    @property
+    def asked(self) -> tuple[float, float]:
+        """Frequencies [rad/s] of the range, and those that only the site's winds keep out of it."""
+        band = self.band or self.frequency
+        return min(band[0], self.frequency[0]), max(band[1], self.frequency[1])
 
     @property
     def over_wind(self) -> bool:
@@ -116,8 +125,11 @@ class OperatingRange:
         return replace(self, frequency=ends, wind=wind)  # type: ignore[arg-type]
 
     def stretched(self, low: float, high: float) -> OperatingRange:
-        """The range that holds this one with its frequencies times every factor between two, `low` <= 1 <= `high`."""
-        ends = self.frequency[0] * low, self.frequency[1] * high
+        """The range that holds this one with its frequencies times every factor between two, `low` <= 1 <= `high`.
+
+        Where the site has the winds for it: what they keep out of this range may be in that one.
+        """
+        ends = self.asked[0] * low, self.asked[1] * high
         if self.wind is None or self.law is None:
             return replace(self, frequency=ends)
         least, most = (f(a, b) for f, a, b in zip((max, min), self.site, self.law.speed_range, strict=True))
@@ -126,7 +138,7 @@ class OperatingRange:
         lo, hi = min(self.wind[0], max(lo, least)), max(self.wind[1], min(hi, most))
         lo, hi, _ = _ascending(self.law, lo, hi, self.wind[0])
         found = _over(self.law, self.lift, (lo, hi), self.reference, self.site, self.basis, self.moves)
-        return replace(found, doubts=self.doubts)
+        return replace(found, doubts=self.doubts, band=self.asked)
 
     def widened(self, share: float = HALF) -> OperatingRange:
         """The range with its width grown by a share, as far as the site and the tables of the case reach."""
@@ -291,7 +303,7 @@ def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
             " pipe, too, and were not looked at.",
         )
     found = _over(law, vortex_shedding(case).lift, (lo, hi), case.pipe.frequency, site, tuple(basis), True)
-    return replace(found, doubts=(*doubts, *_left_out(case, law, most_mass_ratio)))
+    return replace(found, doubts=(*doubts, *_left_out(case, law, most_mass_ratio)), band=bands[0])
 
 
 def _beyond_the_site(speed: float, ends: list[float], site: tuple[float, float]) -> tuple[str, ...]:
@@ -314,12 +326,13 @@ def other_modes(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, O
     if case.analysis.wind is not None or case.analysis.detuning is not None:
         return ()
     law, (site, _) = wind_excitation(case), site_winds(case)
-    return tuple((other, _of_another_mode(other, law, winds, site))
-                 for other, winds in _beside(case, most_mass_ratio) if ascending_stretches(law, *winds))  # fmt: skip
+    found = _beside(case, most_mass_ratio)
+    return tuple((other, _of_another_mode(other, law, band, winds, site))
+                 for other, band, winds in found if ascending_stretches(law, *winds))  # fmt: skip
 
 
-def _beside(case: Case, most_mass_ratio: float) -> Iterator[tuple[Case, tuple[float, float]]]:
-    """The other modes of an elastic pipe that winds of its site excite: a case that each governs, and these winds."""
+def _beside(case: Case, most_mass_ratio: float) -> Iterator[tuple[Case, tuple[float, float], tuple[float, float]]]:
+    """The other modes that winds of the site excite: a case that each governs, its band [rad/s], and these winds."""
     if isinstance(case.pipe, Pipe):
         return
     law, (site, _) = wind_excitation(case), site_winds(case)
@@ -333,7 +346,7 @@ def _beside(case: Case, most_mass_ratio: float) -> Iterator[tuple[Case, tuple[fl
         lo = max(min(ends, default=math.inf), site[0], reached[0])
         hi = min(max(ends, default=0.0), site[1], reached[1])
         if lo < hi * (1 - _SAME):
-            yield other, (lo, hi)
+            yield other, band, (lo, hi)
 
 
 def left_out(case: Case, most_mass_ratio: float = 0.0) -> tuple[str, ...]:
@@ -349,13 +362,13 @@ def _left_out(case: Case, law: WindExcitation, most_mass_ratio: float) -> tuple[
     return tuple(
         f"Winds of {winds[0]:.4g} ... {winds[1]:.4g} m/s excite mode {other.pipe.governing_mode}, but the shedding"  # type: ignore[union-attr]
         " frequency falls with the wind in all of them: it was not looked at."
-        for other, winds in _beside(case, most_mass_ratio)
+        for other, _, winds in _beside(case, most_mass_ratio)
         if not ascending_stretches(law, *winds)
     )
 
 
 def _of_another_mode(
-    case: Case, law: WindExcitation, winds: tuple[float, float], site: tuple[float, float]
+    case: Case, law: WindExcitation, band: tuple[float, float], winds: tuple[float, float], site: tuple[float, float]
 ) -> OperatingRange:
     """The winds that excite a mode; where the shedding frequency falls with the wind only a part, and a doubt."""
     mode, omega = case.pipe.governing_mode, case.pipe.frequency  # type: ignore[union-attr]
@@ -368,7 +381,7 @@ def _of_another_mode(
         )
     basis = (f"Winds of {lo:.4g} ... {hi:.4g} m/s excite mode {mode}, with the lift in step with it.",)
     found = _over(law, vortex_shedding(case).lift, (lo, hi), omega, site, basis, True)
-    return replace(found, doubts=doubts)
+    return replace(found, doubts=doubts, band=band)
 
 
 def _nearness(law: WindExcitation, winds: tuple[float, float], omega: float) -> tuple[bool, float]:

@@ -25,6 +25,7 @@ _BINOMIAL = np.array([math.comb(_DEGREE, i) for i in range(_DEGREE + 1)], dtype=
 _BASIS = _BINOMIAL * _NODES[:, None] ** np.arange(_DEGREE + 1) * (1 - _NODES[:, None]) ** np.arange(_DEGREE, -1, -1)
 _TO_BERNSTEIN = np.linalg.inv(_BASIS)
 _NOISE = 4e-16 * float(np.max(np.sum(np.abs(_TO_BERNSTEIN), axis=1)))  # of the terms: what rounding does
+_ROUNDED = 8e-15  # of the terms: what rounding does to one value
 _ALL_NOISE = 10.0  # times that: an interval on which nothing is larger cannot be decided
 _SMALLEST = 2.0**-44
 _STRIP = 2.0  # ratio of the ends of the intervals begun with
@@ -66,6 +67,22 @@ def _coefficients(form, omega, xi1, xi2, k1, rho2, F, kappa, u, du, values, bern
             total += _TO_BERNSTEIN[i, k] * values[k]
         bernstein[i] = total
     return _NOISE * size
+
+
+@kernel
+def _is_told(values, noise):
+    """Whether values at the nodes of a short interval show every zero in it: none is within the noise, or comes near.
+
+    On it the polynomial is all but a parabola, which falls below its smallest node by less than a quarter of the
+    difference of the differences there.
+    """
+    for i in range(_DEGREE + 1):
+        bend = 0.0
+        if 0 < i < _DEGREE:
+            bend = abs(values[i + 1] - 2.0 * values[i] + values[i - 1])
+        if abs(values[i]) <= noise + 0.25 * bend:
+            return False
+    return True
 
 
 @kernel
@@ -146,8 +163,15 @@ def saddle_nodes(form, omega, xi1, xi2, k1, rho2, F, kappa, W_lo, W_hi, out):
                     zero = _zero_between(form, omega, xi1, xi2, k1, rho2, F, kappa, u, u + du)
                     found = _keep(form, omega, xi1, xi2, k1, rho2, F, kappa, zero, False, 0.0, out, found)
             elif du < _SMALLEST * (u + du) or max(-low, high) < _ALL_NOISE * noise:
-                middle, width = u + 0.5 * du, du / (u + du)
-                found = _keep(form, omega, xi1, xi2, k1, rho2, F, kappa, middle, True, width, out, found)
+                if _is_told(values, _ROUNDED * noise / _NOISE):
+                    for i in range(_DEGREE):
+                        if found >= 0 and (values[i] > 0.0) != (values[i + 1] > 0.0):
+                            left, right = u + du * _NODES[i], u + du * _NODES[i + 1]
+                            zero = _zero_between(form, omega, xi1, xi2, k1, rho2, F, kappa, left, right)
+                            found = _keep(form, omega, xi1, xi2, k1, rho2, F, kappa, zero, False, 0.0, out, found)
+                else:
+                    middle, width = u + 0.5 * du, du / (u + du)
+                    found = _keep(form, omega, xi1, xi2, k1, rho2, F, kappa, middle, True, width, out, found)
             else:
                 if top + 2 > stack.shape[0]:
                     return -1

@@ -94,7 +94,7 @@ def test_where_the_shedding_frequency_falls_with_the_wind_the_range_ends():
     table = [[1 * scale, 0.2], [11 * scale, 0.2], [11.2 * scale, 0.15], [99 * scale, 0.15]]
     within = operating_range(case({"strouhal": table}))
     assert within.wind == pytest.approx((LOW, 11), rel=1e-12)
-    assert any("falls with the wind" in sentence for sentence in within.basis)
+    assert any("falls with the wind" in sentence for sentence in within.doubts)
     with pytest.raises(frahm.ParameterError, match="ascends"):
         operating_range(case({"strouhal": table}), wind=(9, 12))
 
@@ -234,3 +234,19 @@ def test_winds_beyond_a_table_and_two_windows_at_once_are_refused():
         operating_range(case({"strouhal": [[9 * scale, 0.2], [11 * scale, 0.2]]}), wind=(9, 12))
     with pytest.raises(frahm.ParameterError, match=r"analysis\.wind"):
         case(analysis={"wind": [9, 10], "detuning": [-1, 1]})
+
+
+def test_a_pipe_off_its_frequency_meets_the_same_winds_of_the_site():
+    """Where the winds of the site end below resonance, a softer pipe still has all of them."""
+    within = operating_range(case({"speed": 9, "range": [5, 9.4]}))
+    assert within.wind[1] == 9.4 < RESONANCE
+    assert within.asked[1] > within.frequency[1]
+    softer = within.stretched(0.9, 1.0).part(0.9 * within.asked[0], 0.9 * within.asked[1])
+    assert softer.wind == pytest.approx((0.9 * within.wind[0], 9.4))
+
+
+def test_a_knot_of_a_table_at_the_end_of_the_range_is_no_piece_of_its_own():
+    viscosity = 1.5e-5
+    table = [[1e5, 0.2], [9.4 * DIAMETER / viscosity, 0.2], [1e6, 0.21]]
+    within = operating_range(case({"strouhal": table, "viscosity": viscosity, "speed": 9, "range": [5, 9.4]}))
+    assert np.all(np.diff(within.factor[:, 0]) > 0)
