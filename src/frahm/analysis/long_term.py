@@ -61,6 +61,7 @@ def worst(work: Work) -> Section:
         "relative_detuning": motion.relative_frequency - reference,
         "min_basin": first.min_basin,
         "not_excluded": max(part.not_excluded for part in parts),
+        "of_governing_mode": motions[0].pipe_peak,
     }
     modes = [_mode_row(case, m) for (case, _), m in zip(others_of(work), motions[1:], strict=True)]
     several = (

@@ -62,19 +62,21 @@ def _place(found: dict[str, Any]) -> str:
 
 
 def lock_in(work: Work) -> Section:
-    """The motion at the design wind beside the resonant one, and which of them counts."""
+    """The motion at the design wind beside the resonant one of the mode this wind may lock in to, and which counts."""
     motions, worst = work.done.results.get("motions"), work.done.results.get("worst_case")
     if not motions or worst is None:
         return Section()
     speed, here = work.case.wind.speed, motions[0]
     bands = [lock_in_band(case) for case in (work.case, *(case for case, _ in others_of(work)))]
-    band = next((band for band in bands if band.low <= speed <= band.high), bands[0])
+    modes = [worst["of_governing_mode"], *(row["pipe_peak"] for row in work.done.results["other_modes"])]
+    mode = next((at for at, band in enumerate(bands) if band.low <= speed <= band.high), 0)
+    band, resonant = bands[mode], modes[mode]
     inside = bool(band.low <= speed <= band.high)
     return Section(results={"lock_in": {
         "design_wind": speed, "band": [band.low, band.high], "standing": band.standing, "inside": inside,
         "at_design_wind": here["pipe_peak"], "kind": here["kind"],
         "at_design_wind_without_absorber": here["pipe_peak_without_absorber"],
-        "resonant": worst["pipe_peak"], "counted": worst["pipe_peak"] if inside else here["pipe_peak"],
+        "resonant": resonant, "counted": resonant if inside else here["pipe_peak"],
     }})  # fmt: skip
 
 

@@ -10,6 +10,8 @@ from frahm.web.tuned import MASS_RATIO
 
 # Steps that put nothing to the test, and that the verdict does not read.
 _ONLY_SHOWN = ("wind", "detached_curve_margin", "manifold", "basins", "decision")
+# Steps that take longer than one waits for a page; what they put to the test only the report says.
+_LEFT_TO_THE_REPORT = ("modulated", "cross_check", "attractors")
 DEVICES = ("bare", "this", "tuned")
 
 
@@ -28,7 +30,7 @@ def decision(case: Case, progress: Callable[[str, int, int], None], *, device: s
     -------
     dict
         "worst": row of the worst motion, None if there is no bounded one; "acceptance" as in the summary of
-        `frahm run`, with every check of its steps; "lock_in" and "range" as there.
+        `frahm run`, with the checks of its quick steps; "lock_in" and "range" as there.
     """
     from frahm.analysis import STEPS
     from frahm.analysis.acceptance import judged_limits
@@ -42,7 +44,7 @@ def decision(case: Case, progress: Callable[[str, int, int], None], *, device: s
         return _bare(
             case, without_absorber(Work(case)), fatigue(Work(case.without_absorbers())), utilisations, accepted
         )
-    steps = [step for step in STEPS if step.run.__name__ not in _ONLY_SHOWN]
+    steps = [step for step in STEPS if step.run.__name__ not in (*_ONLY_SHOWN, *_LEFT_TO_THE_REPORT)]
     work = Work(textbook_damper(case, MASS_RATIO) if device == "tuned" else case)
     for number, step in enumerate(steps):
         progress(device, number, len(steps))

@@ -311,7 +311,7 @@ def test_the_decision_is_that_of_frahm_run(case):
     )
 
 
-def test_the_verdict_counts_the_checks_of_every_step():
+def test_the_verdict_counts_the_checks_of_quick_steps():
     # the winds that shed in the window move this pipe more than the one lift does: only a check of another step says so
     case = CASE.without_absorbers().with_wind(speed=2.4)
     case = frahm.load_case(case.to_dict() | {"limits": {"displacement": 1.0}})
