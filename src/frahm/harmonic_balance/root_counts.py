@@ -91,14 +91,19 @@ def polynomial_counts(e: Floats, S: Complexes, F: Complexes) -> tuple[np.ndarray
 
 
 def cubic_turns(k: float, S: Complexes, F: Complexes) -> Floats:
-    """The turns of lambda for one cubic spring with the equivalent stiffness k |Z|^2, in closed form."""
+    """The turns of lambda for one cubic spring with the equivalent stiffness k |Z|^2, in closed form.
+
+    Where nothing damps, lambda is 0 at one of them: that is no birth.
+    """
     size, c = np.abs(S), math.copysign(1.0, k) * S.real / np.abs(S)
     w = np.flatnonzero(c < -math.sqrt(0.75))
     turns = []
     for sign in (1, -1):
         N = (-2 * c[w] + sign * np.sqrt(4 * c[w] ** 2 - 3)) / 3 * size[w] / abs(k)
-        force = np.log(np.abs(S[w] + k * N) ** 2 * N / np.abs(F[w]) ** 2)
-        turns.append(np.column_stack([w, 0.5 * np.log(N), force, np.full(w.size, sign), np.zeros(w.size)]))
+        squared = np.abs(S[w] + k * N) ** 2 * N / np.abs(F[w]) ** 2
+        some = squared > 0
+        log_a, force, sides = 0.5 * np.log(N[some]), np.log(squared[some]), np.full(np.count_nonzero(some), sign)
+        turns.append(np.column_stack([w[some], log_a, force, sides, np.zeros_like(log_a)]))
     return np.concatenate(turns)
 
 

@@ -93,7 +93,7 @@ def cubic_stiffnesses(pb: Problem) -> Floats | None:
 def shared_drive(S: Complexes, F: Complexes) -> Complexes | None:
     """b (r,) with S = diag(p) + F b^T off the diagonal; None if one motion does not couple all coordinates."""
     r = F.size
-    if np.any(np.abs(F) == 0):
+    if np.any(np.abs(F) <= _COUPLED * np.max(np.abs(F))):  # not driven, but for rounding
         return None
     per_force = S / F[:, None]
     b = np.array([np.mean(np.delete(per_force[:, j], j)) for j in range(r)])

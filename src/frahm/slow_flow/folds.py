@@ -16,14 +16,11 @@ import numpy as np
 
 from frahm.compiled import kernel
 from frahm.slow_flow.kernels import linear_parts
-from frahm.slow_flow.subdivision import STIFFEST, frequency_of, variable_of
+from frahm.slow_flow.subdivision import STIFFEST, bernstein, frequency_of, variable_of
 
 MOST_INTERVALS = 100_000
 _DEGREE = 14
-_NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE)
-_BINOMIAL = np.array([math.comb(_DEGREE, i) for i in range(_DEGREE + 1)], dtype=float)
-_BASIS = _BINOMIAL * _NODES[:, None] ** np.arange(_DEGREE + 1) * (1 - _NODES[:, None]) ** np.arange(_DEGREE, -1, -1)
-_TO_BERNSTEIN = np.linalg.inv(_BASIS)
+_NODES, _, _TO_BERNSTEIN = bernstein(_DEGREE)
 _NOISE = 4e-16 * float(np.max(np.sum(np.abs(_TO_BERNSTEIN), axis=1)))  # of the terms: what rounding does
 _ROUNDED = 8e-15  # of the terms: what rounding does to one value
 _ALL_NOISE = 10.0  # times that: an interval on which nothing is larger cannot be decided

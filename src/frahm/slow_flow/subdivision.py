@@ -14,19 +14,28 @@ import math
 
 import numpy as np
 
+from frahm.arrays import Floats
 from frahm.compiled import kernel
 from frahm.slow_flow.kernels import AVERAGED, characteristic, hurwitz, linear_parts
 
 MOST_BOXES = 200_000
 _DEGREE = 4
-_NODES = 0.5 - 0.5 * np.cos(np.pi * np.arange(_DEGREE + 1) / _DEGREE)
-_BINOMIAL = np.array([math.comb(_DEGREE, i) for i in range(_DEGREE + 1)], dtype=float)
-_BASIS = _BINOMIAL * _NODES[:, None] ** np.arange(_DEGREE + 1) * (1 - _NODES[:, None]) ** np.arange(_DEGREE, -1, -1)
-_TO_BERNSTEIN = np.linalg.inv(_BASIS)
 _NOISE = 1e-13
 _SMALLEST = 2.0**-44
 STIFFEST = 1e6  # n over the sink's inertia e beyond which the sink is as good as fixed to the pipe
 _STRIPS = 24
+
+
+def bernstein(degree: int) -> tuple[Floats, Floats, Floats]:
+    """Nodes on [0, 1] (degree + 1,), binomials, and the matrix from values at the nodes to Bernstein coefficients."""
+    k = np.arange(degree + 1)
+    nodes: Floats = 0.5 - 0.5 * np.cos(np.pi * k / degree)
+    binomials = np.array([math.comb(degree, i) for i in k], dtype=float)
+    values = binomials * nodes[:, None] ** k * (1 - nodes[:, None]) ** k[::-1]
+    return nodes, binomials, np.asarray(np.linalg.inv(values), dtype=float)
+
+
+_NODES, _BINOMIAL, _TO_BERNSTEIN = bernstein(_DEGREE)
 
 
 @kernel

@@ -204,7 +204,8 @@ class _Filling:
                 self._submit(executor, stopped)
                 finished, _ = wait(self.running, timeout=_LOOK, return_when=FIRST_COMPLETED)
                 for future in finished:
-                    self._take(future)
+                    if future in self.running:  # giving up takes the others out
+                        self._take(future)
                 self._write_if_due()
                 self.report(title, self.done, self.store.study.size)
         except BaseException:
