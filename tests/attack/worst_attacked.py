@@ -94,22 +94,26 @@ def challenge(promise, system, within, region, states=STATES, seed=0, force=1.0)
 
 
 def _device(name, rival, device, problem, samples, states):
-    """Rows of one device: as designed, and with pipe and absorber off."""
+    """Rows of one device in every mode that winds excite: as designed, and with pipe and absorber off."""
     promise = Promise(name, rival.worst.pipe_peak, rival.worst.relative_peak, _least(samples))
-    system, within = build_system(device), operating_range(device)
-    region = region_for(system, within.frequency[1], promise.pipe_peak, promise.stroke)
     nominal = {"name": name, "verified": rival.worst.verified, "unverified": list(rival.worst.unverified)}
-    rows = [nominal | challenge(promise, system, within, region, states)]
     scattered = Promise(f"{name}, off", rival.scattered.pipe_peak, rival.relative_peak, _least(samples))
-    random = np.random.default_rng(5)
-    for index in range(_DISTURBED):
-        off = _disturbance(problem, random)
-        changed = off.of(system)
-        there = problem.windows.range(off, changed.reference_frequency)
-        region = region_for(changed, there.frequency[1], scattered.pipe_peak, scattered.stroke)
-        part = challenge(scattered, changed, there, region, states // _DISTURBED, index)
-        facts = {"name": f"{scattered.name}: {off.text}", "verified": rival.scattered.verified}
-        rows.append(facts | {"unverified": list(rival.scattered.unverified)} | part)
+    rows = []
+    for mode in problem.modes(device):
+        within = mode.windows.range(Disturbance(), mode.system.reference_frequency)
+        region = region_for(mode.system, within.frequency[1], promise.pipe_peak, promise.stroke)
+        rows.append(nominal | challenge(promise, mode.system, within, region, states))
+        random = np.random.default_rng(5)
+        for index in range(_DISTURBED):
+            off = _disturbance(problem, random)
+            if not mode.windows.includes(off):
+                continue
+            changed = off.of(mode.system)
+            there = mode.windows.range(off, changed.reference_frequency)
+            region = region_for(changed, there.frequency[1], scattered.pipe_peak, scattered.stroke)
+            part = challenge(scattered, changed, there, region, states // _DISTURBED, index)
+            facts = {"name": f"{scattered.name}: {off.text}", "verified": rival.scattered.verified}
+            rows.append(facts | {"unverified": list(rival.scattered.unverified)} | part)
     return rows
 
 

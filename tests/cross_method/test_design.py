@@ -8,7 +8,7 @@ import pytest
 import frahm
 from frahm.analysis.long_term import worst
 from frahm.analysis.section import Work
-from frahm.design import DesignSettings, with_design
+from frahm.design import DesignSettings
 from frahm.design.exact import exact_judgement
 from frahm.design.finalists import finalists
 from frahm.design.problem import Problem
@@ -78,14 +78,9 @@ def test_designs_the_closed_form_is_wrong_about_are_left_for_better_ones():
     problem = Problem.of(case, settings_for(case))
     tier = problem.tier("sink")
     looks, _ = tier.best(problem.limits, Corrections())
-    exact = exact_judgement(
-        frahm.build_system(with_design(case, tier.space.absorber(looks))), problem.windows, problem.disturbances
-    )
+    exact = exact_judgement(problem.modes_of(tier.space.absorber(looks)), problem.disturbances)
     assert exact.pipe_peak > 3 * tier.judge(looks[None])[0, PEAKS]
-    kept, discarded = finalists(
-        tier, lambda design: frahm.build_system(with_design(case, design)), problem.windows, problem.disturbances,
-        problem.limits,
-    )  # fmt: skip
+    kept, discarded = finalists(tier, problem.modes_of, problem.disturbances, problem.limits)
     assert any("one harmonic does not show" in reason for reason in discarded)
     assert kept
     assert all(finalist.exact.pipe_peak < 0.3 * exact.pipe_peak for finalist in kept)

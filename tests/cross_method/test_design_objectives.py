@@ -7,7 +7,7 @@ import frahm
 from frahm.assessment.climate_mean import climate_mean
 from frahm.design import DesignSettings, Objective, verified_designs, with_design
 from frahm.design.disturbance import Disturbance
-from frahm.design.exact import Windows
+from frahm.design.exact import ExcitedMode, Windows
 from frahm.design.verification import verification
 from frahm.loads import wind_climate
 from frahm.systems import with_parameters
@@ -75,7 +75,9 @@ def test_a_quantile_over_the_scatter_is_one_of_the_worst_cases():
     system = frahm.build_system(with_design(CASE, PEAK))
     window = (OMEGA - 0.2, OMEGA + 0.2)
     off = [Disturbance(force=f) for f in (0.7, 0.8, 0.9, 1.0)]
-    found = verification(system, Windows(window, window, False), off, Objective("peak", 0.7), samples=8, seed=1)
+    found = verification(
+        [ExcitedMode(system, Windows(window, window, False))], off, Objective("peak", 0.7), samples=8, seed=1
+    )
     worst = [frahm.worst_case(with_parameters(system, force=d.force), frequency=window, samples=8) for d in off]
     assert found.value == pytest.approx(sorted(w.pipe_peak for w in worst)[3])
     assert found.pipe_peak == pytest.approx(max(w.pipe_peak for w in worst))
@@ -96,8 +98,8 @@ def test_less_rms_than_the_sink_for_the_peak_is_had_by_one_that_beats():
     largest = []
     for design, window in ((PEAK, (4.870, 4.885)), (of_rms, (4.914, 4.924))):  # around the worst of each
         system = frahm.build_system(with_design(CASE, design))
-        windows = Windows(window, window, False)
-        largest.append(verification(system, windows, [Disturbance()], Objective("rms"), samples=4, seed=1))
+        mode = ExcitedMode(system, Windows(window, window, False))
+        largest.append(verification([mode], [Disturbance()], Objective("rms"), samples=4, seed=1))
     for_peak, for_rms = largest
     assert for_peak.value == pytest.approx(for_peak.pipe_peak / np.sqrt(2), rel=0.01)
     assert for_rms.value == for_rms.pipe_rms < for_peak.value

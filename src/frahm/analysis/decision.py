@@ -14,12 +14,12 @@ from frahm.arrays import labelled
 from frahm.assessment import damage_of_modes, device_row, doubts_of_modes, total_damage, with_stress
 from frahm.attractors import WorstMotion, joined, lasting_motions, worst_over
 from frahm.case import Case
-from frahm.design.completing import other_motions_at
 from frahm.design.disturbance import Disturbance
-from frahm.design.exact import Windows
+from frahm.design.objective import Objective
 from frahm.design.problem import Problem
 from frahm.design.settings import settings_for
 from frahm.design.tuned import textbook_damper
+from frahm.design.verification import verification
 from frahm.errors import ParameterError
 from frahm.harmonic_balance import is_linear
 from frahm.loads import OperatingRange, operating_range, other_modes, vortex_shedding
@@ -157,11 +157,10 @@ def _frequency_errors(work: Work, devices: list[Device], rows: Mapping[str, Mapp
         problem = Problem.of(work.case, settings_for(work.case, changes={"objective": "peak"}))
     except ParameterError:
         return {}
-    errors, windows = problem.settings.errors, problem.windows_of_errors
-    peaks = {device.name: [_at_error(windows, device, r, rows) for r in errors] for device in devices}
+    errors, cases = problem.settings.errors, {device.name: device.case for device in devices}
     if "case" in rows and is_linear(work.system):
-        own = Device("case", work.case, devices[0].motion, devices[0].lasting)
-        peaks["case"] = [_at_error(windows, own, r, rows) for r in errors]
+        cases["case"] = work.case
+    peaks = {name: [_at_error(problem, case, r, rows[name]) for r in errors] for name, case in cases.items()}
     return {
         "error": [r - 1.0 for r in errors],
         "pipe_peak": {name: [motion[0] for motion in row] for name, row in peaks.items()},
@@ -169,16 +168,10 @@ def _frequency_errors(work: Work, devices: list[Device], rows: Mapping[str, Mapp
     }
 
 
-def _at_error(
-    windows: Windows, device: Device, ratio: float, rows: Mapping[str, Mapping[str, Any]]
-) -> tuple[float, bool]:
+def _at_error(problem: Problem, case: Case, ratio: float, row: Mapping[str, Any]) -> tuple[float, bool]:
     """Worst peak [m] of a linear device at a frequency of the pipe over the nominal one, and whether it is verified."""
     if ratio == 1:
-        return float(rows[device.name]["pipe_peak"]), bool(rows[device.name]["verified"])
-    off = Disturbance(pipe_frequency=ratio, lock_in=windows.axis is None)
-    changed = off.of(build_system(device.case))
-    within = windows.range(off, changed.reference_frequency)
-    motion = worst_over(changed, within, samples=1, min_basin=0.0, seed=1).motion
-    others = other_motions_at(device.case, ratio) if windows.moving and windows.axis is not None else []
-    worst = joined([motion, *others])
+        return float(row["pipe_peak"]), bool(row["verified"])
+    off = Disturbance(pipe_frequency=ratio, lock_in=not problem.within.over_wind)
+    worst = verification(problem.modes_of_errors(case), [off], Objective(), samples=1, seed=1)
     return worst.pipe_peak, worst.verified

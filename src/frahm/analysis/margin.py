@@ -11,7 +11,7 @@ import numpy as np
 
 from frahm import readable
 from frahm.analysis.section import Section, Work
-from frahm.harmonic_balance import is_linear
+from frahm.harmonic_balance import LOOKED_AHEAD, begin, births_ahead, is_linear
 from frahm.response import DetachedCurveEvent, ResponseCurve, detached_curve_events
 from frahm.response.exact import exact_curve
 from frahm.systems import with_parameters
@@ -22,6 +22,7 @@ _BIRTH = 1e-3  # relative width to which a birth is bisected
 _SLICES = 4
 _MOST_SADDLE_NODES = 16
 _MOST_SECONDS = 30.0
+_JUST = 1e-4  # of the force: beyond a birth its curve is met
 _BESIDE = 0.002  # of the force: where a merge is looked at from both sides
 
 
@@ -40,12 +41,14 @@ def detached_curve_margin(work: Work) -> Section:
     end = time.monotonic() + _MOST_SECONDS
     doubts: list[str] = []
     above, highest = _searched(work, UPWARD, end, doubts)
+    nearest = min((event.value for event in above), default=highest)
+    birth = None if exists else _next_birth(work, nearest)
     below, lowest = _searched(work, DOWNWARD, end, doubts) if exists else ([], 1.0)
     ahead = min(above, key=lambda event: event.value, default=None)
     born = max((e for e in below if e.direction > 0), key=lambda event: event.value, default=None)
     found: dict[str, Any] = {
         "exists": exists,
-        "next_event": None if ahead is None else _described(work, ahead),
+        "next_event": birth or (None if ahead is None else _described(work, ahead)),
         "born": None if born is None else _described(work, born),
         "searched": [lowest, highest],
     }
@@ -61,7 +64,7 @@ def detached_curve_margin(work: Work) -> Section:
 
 def _over_the_winds(work: Work, curve: dict[str, Any], exists: bool) -> Section:
     """The same where the lift follows the wind: the curve itself is asked at more and more force, and then bisected."""
-    free, taken, events = 1.0, math.nan, []
+    free, taken, event = 1.0, math.nan, None
     if not exists:
         for force in _LADDER:
             if _detached_count(work, force):
@@ -71,22 +74,39 @@ def _over_the_winds(work: Work, curve: dict[str, Any], exists: bool) -> Section:
         while math.isfinite(taken) and taken - free > _BIRTH * taken:
             middle = 0.5 * (free + taken)
             free, taken = (free, middle) if _detached_count(work, middle) else (middle, taken)
-        if math.isfinite(taken):
-            events = [_born(work, taken)]
+        event = _next_birth(work, taken if math.isfinite(taken) else free)
+        if event is not None:
+            free = taken = event["force"]
+        elif math.isfinite(taken):
+            event = _born(work, taken)
     found: dict[str, Any] = {
         "exists": exists,
-        "next_event": events[0] if events else None,
+        "next_event": event,
         "born": None,
-        "searched": [1.0, taken if events else free],
+        "searched": [1.0, free if event is None else taken],
     }
     found["force_margin"] = math.nan if exists else free
     return Section(results={"response": {"harmonic-balance": curve | {"detached_curve_margin": found}}})
 
 
-def _born(work: Work, force: float) -> dict[str, Any]:
-    """Where the detached curve is that a factor on the force has made appear."""
-    curve = _curve(work, force)
-    new = next(branch for branch in curve.branches if branch.detached and not branch.asymmetric)
+def _next_birth(work: Work, most: float) -> dict[str, Any] | None:
+    """The nearest birth at more force, below `most` times it: also of a curve that merges again soon after."""
+    force = 1.0
+    while force < most:
+        search = begin(with_parameters(work.system, force=force), *work.range.frequency, None, work.range.factor)
+        births = [force * factor for factor, _ in births_ahead(search)]
+        if births and births[0] < most:
+            return _born(work, births[0])
+        force *= LOOKED_AHEAD
+    return None
+
+
+def _born(work: Work, force: float) -> dict[str, Any] | None:
+    """Where the detached curve is that a factor on the force has made appear; None if there is none beyond it."""
+    curve = _curve(work, (1 + _JUST) * force)
+    new = next((branch for branch in curve.branches if branch.detached and not branch.asymmetric), None)
+    if new is None:
+        return None
     at = int(np.argmax(new.pipe_peak))
     return {
         "kind": "birth",

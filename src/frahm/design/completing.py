@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from frahm.assessment import damage_of_modes, doubts_of_modes, total_damage, with_stress
 from frahm.attractors import WorstCase, WorstMotion, joined, lasting_motions, worst_over
 from frahm.case import Case
 from frahm.design.disturbance import Disturbance
-from frahm.design.problem import Problem
-from frahm.loads import other_modes
-from frahm.systems import build_system
+from frahm.design.problem import Problem, governed
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-def worst_motion(case: Case, problem: Problem, nominal: WorstCase | None) -> tuple[WorstMotion, xr.Dataset]:
+def worst_motion(case: Case, problem: Problem, nominal: tuple[WorstCase, ...]) -> tuple[WorstMotion, xr.Dataset]:
     """The worst motion of the pipe as given with a device, by the very search of `frahm run`, and all that last.
 
     Parameters
@@ -25,33 +22,21 @@ def worst_motion(case: Case, problem: Problem, nominal: WorstCase | None) -> tup
     case : Case
         With the device.
     problem : Problem
-    nominal : WorstCase or None
-        What is known of the governing mode already.
+    nominal : tuple of WorstCase
+        What is known already, in every mode; empty if nothing is.
     """
-    within, settings = problem.within, problem.settings
-    asked: dict[str, Any] = {"samples": settings.samples, "seed": settings.seed, "min_basin": 0.0}
-    first = worst_over(build_system(case), within, **asked) if nominal is None else nominal
-    parts, motions = [first], [with_stress(case, first)]
-    for other, part in other_modes(case, problem.most_mass_ratio) if within.moves else ():
-        parts.append(worst_over(build_system(other), part, **asked, sampled=False))
-        motions.append(with_stress(other, parts[-1]))
-    return joined(motions), lasting_motions(parts)
-
-
-def other_motions_at(case: Case, ratio: float, most_mass_ratio: float = 0.0) -> list[WorstMotion]:
-    """Worst motions of the other modes where all frequencies of the pipe are `ratio` times as high.
-
-    By the stable periodic responses; their ranges move with the pipe, as far as the site has such winds.
-    """
-    found, off = [], Disturbance(pipe_frequency=ratio, lock_in=False)
-    for other, part in other_modes(case, most_mass_ratio):
-        lo, hi = (ratio * W for W in part.asked)
-        wide = part.stretched(min(ratio, 1.0), max(ratio, 1.0))
-        if max(lo, wide.frequency[0]) < min(hi, wide.frequency[1]):
-            changed = off.of(build_system(other))
-            moved = replace(wide.part(lo, hi), reference=changed.reference_frequency)
-            found.append(worst_over(changed, moved, samples=1, min_basin=0.0, seed=1, sampled=False).motion)
-    return found
+    settings = problem.settings
+    if not nominal:
+        ranges = (problem.within, *(windows.range(Disturbance()) for windows in problem.other_windows.values()))
+        nominal = tuple(
+            worst_over(
+                mode.system, within, samples=settings.samples, seed=settings.seed, min_basin=0.0, sampled=not other
+            )
+            for other, (mode, within) in enumerate(zip(problem.modes(case), ranges, strict=True))
+        )
+    cases = [case, *(governed(case, mode) for mode in problem.other_windows)]
+    motions = [with_stress(one, part) for one, part in zip(cases, nominal, strict=True)]
+    return joined(motions), lasting_motions(nominal)
 
 
 def fatigue_row(case: Case) -> dict[str, Any] | None:

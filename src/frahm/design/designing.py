@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import os
 from collections.abc import Callable, Sequence
@@ -16,21 +17,21 @@ from frahm.assessment import accepted, device_row, utilisations
 from frahm.attractors import WorstCase, WorstMotion, joined
 from frahm.case import FAMILIES, Case, Design, load_case
 from frahm.design.absorber import DesignedAbsorber, absorber_of, parameters_text, with_design, without_first
-from frahm.design.completing import fatigue_row, other_motions_at, worst_motion
+from frahm.design.completing import fatigue_row, worst_motion
 from frahm.design.disturbance import Disturbance
-from frahm.design.exact import exact_birth
+from frahm.design.exact import ExcitedMode, conditions_of, exact_birth
 from frahm.design.finalists import FAR, Finalist, finalists
 from frahm.design.hardware import Hardware, as_built, hardware
 from frahm.design.objective import Objective
 from frahm.design.problem import Problem
 from frahm.design.robustness import Sensitivity, ToleranceBand, sensitivities, tolerance_band
-from frahm.design.search import Limits, TierOne
+from frahm.design.search import Limits
 from frahm.design.settings import DesignSettings, settings_for
 from frahm.design.study import DesignStudy, MarginPoint, Rival, first_of, headline
 from frahm.design.verdict import verdict
 from frahm.design.verification import Verification, climate_verification, verification
+from frahm.systems import build_system
 from frahm.errors import ParameterError
-from frahm.systems import System, build_system
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -160,10 +161,10 @@ class _Designing:
         self.objective = self.problem.objective
         self.limits = self.problem.limits
         self.done, self.total = 0, 0
-        self.nominal: dict[DesignedAbsorber | str | None, WorstCase | None] = {}
-
-    def system_of(self, design: DesignedAbsorber) -> System:
-        return build_system(with_design(self.case, design))
+        self.nominal: dict[DesignedAbsorber | str | None, tuple[WorstCase, ...]] = {}
+        # modes by their number, None being the governing one
+        self.worst_mode: dict[DesignedAbsorber, int | None] = {}
+        self.sized_for: dict[DesignedAbsorber, int | None] = {}
 
     def run(self) -> None:
         # the mixture is held against its corners, so they come first
@@ -194,11 +195,8 @@ class _Designing:
             self.progress(title + so_far, min(self.done, self.total), self.total)
         self.done += 1
 
-    def _tier(self, family: str, margin: float | None = None) -> TierOne:
-        return self.problem.tier(family, margin)
-
     def _binding(self, family: str) -> str:
-        return self._tier(family).binding(self.limits)
+        return self.problem.tier(family).binding(self.limits)
 
     def _limits_text(self) -> str:
         parts = [f"force margin {self.settings.force_margin:g}"]
@@ -208,31 +206,42 @@ class _Designing:
             parts.append(f"spring stress {self.limits.stress:g} Pa")
         return ", ".join(parts)
 
-    def _finalists(self, family: str, limits: Limits, wary: bool = False) -> tuple[list[Finalist], list[str]]:
+    def _finalists(
+        self, family: str, limits: Limits, wary: bool = False, sized_for: int | None = None
+    ) -> tuple[list[Finalist], list[str]]:
         """Finalists of a family under limits, and why others were discarded."""
         problem = self.problem
-        tier = problem.tier(family, limits.force_margin)
-        kept, discarded = finalists(tier, self.system_of, problem.windows, problem.disturbances, limits, wary)
+        tier = problem.tier(family, limits.force_margin, sized_for)
+        kept, discarded = finalists(tier, problem.modes_of, problem.disturbances, limits, wary)
         return kept, [f"{_DEVICES[family]}: {reason}" for reason in discarded]
 
     def designed(self, family: str) -> Rival | None:
         """Best verified design of a family: finalists in the order of what is expected of them."""
         self._step(f"search: {_DEVICES[family]}")
-        best = self._cornered(family)
+        best, mode, tried = self._cornered(family), self._worst_mode(self.bare), set[int | None]()
+        # where the pipe then moves most in another mode, a device that suits that one may do better
+        while mode not in tried:
+            tried.add(mode)
+            best = self._searched(family, best, mode)
+            mode = None if best is None or best.design is None else self.worst_mode.get(best.design)
+        return best
+
+    def _searched(self, family: str, best: Rival | None, sized_for: int | None = None) -> Rival | None:
+        """Best verified design of a family among those sized for a mode, and what was best before."""
         corner = best
         for attempt in range(_ATTEMPTS):
-            waiting, discarded = self._finalists(family, self.limits, wary=attempt > 0)
+            waiting, discarded = self._finalists(family, self.limits, attempt > 0, sized_for)
             self.found.discarded += discarded
-            best, failed = self._tried(family, _apart(waiting)[:_MOST_FINALISTS], best)
+            best, failed = self._tried(family, _apart(waiting)[:_MOST_FINALISTS], best, sized_for)
             if not failed and (attempt > 0 or best is not corner):
                 break
             # the closed form does not see what is wrong with these: what is best elsewhere is looked for
             for design in failed:
-                self.problem.avoid(family, design)
+                self.problem.avoid(family, design, sized_for)
         return best
 
     def _tried(
-        self, family: str, waiting: list[Finalist], best: Rival | None
+        self, family: str, waiting: list[Finalist], best: Rival | None, sized_for: int | None
     ) -> tuple[Rival | None, list[DesignedAbsorber]]:
         """Best of the finalists by all attractors, and those that are worse than they looked or unverified."""
         failed: list[DesignedAbsorber] = []
@@ -242,6 +251,8 @@ class _Designing:
             checked = self._verify(with_design(self.case, finalist.design))
             rival = _rival(_DEVICES[family], finalist.design, checked, finalist.force_margin)
             self.nominal[finalist.design] = checked.nominal
+            self.worst_mode[finalist.design] = self._worst_mode(checked)
+            self.sized_for[finalist.design] = sized_for
             more = self._with_margin(rival)
             reason = self._beyond(rival.design, max(checked.relative_peak, more.relative_peak if more else 0.0))
             if reason:
@@ -266,6 +277,19 @@ class _Designing:
             else:
                 self._discard(rival, "it is not better")
         return best, failed
+
+    @functools.cached_property
+    def bare(self) -> Verification | None:
+        """The pipe without the absorber to be designed; None where nothing bounds its resonance."""
+        case = without_first(self.case)
+        if np.any(np.linalg.eigvalsh(build_system(case).damping) > 0):
+            return self._verify(case)
+        self.found.discarded.append("none: without damping nothing bounds the resonance of the pipe: not compared.")
+        return None
+
+    def _worst_mode(self, checked: Verification | None) -> int | None:
+        """Number of the mode in which the pipe moves most; None for the governing one."""
+        return None if checked is None else (None, *self.problem.other_windows)[checked.mode]
 
     def _cornered(self, family: str) -> Rival | None:
         """For the mixture, the better of its corners: the optimum over the family is never worse than either."""
@@ -294,7 +318,7 @@ class _Designing:
         if rival.design is None or not rival.design.nonlinear or self.settings.force_margin == 1:
             return None
         samples = min(_MARGIN_SAMPLES, self.settings.samples)
-        return self._worst(self.system_of(rival.design), force=self.settings.force_margin, samples=samples)
+        return self._worst(self.problem.modes_of(rival.design), force=self.settings.force_margin, samples=samples)
 
     def _discard(self, rival: Rival, why: str) -> None:
         d = rival.design
@@ -310,7 +334,7 @@ class _Designing:
             return climate_verification(
                 case, self.problem.disturbances, self.objective, samples=self._climate_samples, seed=self.settings.seed
             )
-        return self._worst(build_system(case))
+        return self._worst(self.problem.modes(case))
 
     @property
     def _climate_samples(self) -> int:
@@ -320,26 +344,26 @@ class _Designing:
             return fatigue.samples
         return self.settings.samples
 
-    def _worst(self, system: System, *, force: float = 1.0, samples: int | None = None) -> Verification:
+    def _worst(self, modes: Sequence[ExcitedMode], *, force: float = 1.0, samples: int | None = None) -> Verification:
         problem = self.problem
         worst = self.objective if not self.objective.over_climate else Objective("peak", self.objective.quantile)
         return verification(
-            system, problem.windows, problem.disturbances, worst, force=force, seed=self.settings.seed,
+            modes, problem.disturbances, worst, force=force, seed=self.settings.seed,
             samples=self.settings.samples if samples is None else samples,
         )  # fmt: skip
 
     def _others(self) -> None:
         """The pipe without absorber, and the case's own."""
         self._step("no absorber")
-        checked = self._verify(without_first(self.case))
-        self.nominal["none"] = checked.nominal
-        self.found.rivals["none"] = _rival("none", None, checked, math.inf)
+        if self.bare is not None:
+            self.nominal["none"] = self.bare.nominal
+            self.found.rivals["none"] = _rival("none", None, self.bare, math.inf)
         if self.case.absorbers:
             self._step("the case's own absorber")
             problem, most = self.problem, FAR * self.settings.force_margin
             checked = self._verify(self.case)
             self.nominal["case"] = checked.nominal
-            free, _ = exact_birth(build_system(self.case), problem.windows, problem.disturbances, 1.0, most)
+            free, _ = exact_birth(conditions_of(problem.modes(self.case), problem.disturbances), 1.0, most)
             self.found.rivals["case"] = _rival("case", absorber_of(self.case), checked, free)
 
     def _whole(self) -> None:
@@ -347,11 +371,9 @@ class _Designing:
         self._step("other modes, stress and fatigue")
         for name, rival in list(self.found.rivals.items()):
             case = self._rival_case(rival)
-            nominal = self.nominal.get(name if name in ("none", "case") else rival.design)
+            nominal = self.nominal.get(name if name in ("none", "case") else rival.design, ())
             worst, self.found.lasting[name] = worst_motion(case, self.problem, nominal)
-            bounded = self.objective.name == "peak" and self.settings.quantile is None
-            value = max(rival.value, worst.pipe_peak) if bounded else rival.value
-            whole = replace(rival, worst=worst, value=value, fatigue=fatigue_row(case))
+            whole = replace(rival, worst=worst, fatigue=fatigue_row(case))
             self.found.rivals[name] = whole
             if self.found.best is not None and name == self.found.best.name:
                 self.found.best = whole
@@ -380,38 +402,33 @@ class _Designing:
         room, stress = settings.spring_length, settings.spring_stress
         found.hardware = hardware(self.case, design, stroke, best.frequency, room, stress)
         found.tolerance = tolerance_band(
-            design, best.worst_pipe_peak, self.system_of, problem.windows, problem.disturbances, settings.seed
+            design, best.worst_pipe_peak, problem.modes_of, problem.disturbances, settings.seed
         )
         found.sensitivities = sensitivities(
-            design, self.system_of, problem.windows, problem.disturbances, self._tier(settings.family).screening,
+            design, problem.modes_of, problem.disturbances, problem.tier(settings.family).screening,
             self.case.pipe.mass,
         )  # fmt: skip
         if design.kappa and not design.quintic:
-            built, most = build_system(as_built(self.case, design, stroke, room)), FAR * settings.force_margin
+            built, most = problem.modes(as_built(self.case, design, stroke, room)), FAR * settings.force_margin
             found.built = self._worst(built)
-            found.built_margin, _ = exact_birth(built, problem.windows, problem.disturbances, best.force_margin, most)
+            found.built_margin, _ = exact_birth(conditions_of(built, problem.disturbances), best.force_margin, most)
 
     def _error_table(self) -> None:
         """Every device at every frequency error, not retuned."""
-        objective, windows = Objective(), self.problem.windows_of_errors
         lock_in = not self.problem.within.over_wind
         if not self.settings.errors:
             return
         for name, rival in sorted(self.found.rivals.items()):
             self._step(f"frequency errors: {name}")
-            system = self._rival_system(rival)
+            modes = self.problem.modes_of_errors(self._rival_case(rival))
 
-            def row(error: float, system: System = system, rival: Rival = rival) -> WorstMotion:
+            def row(error: float, modes: list[ExcitedMode] = modes, rival: Rival = rival) -> WorstMotion:
                 if error == 1:  # known already, and better
                     return rival.worst
                 one = Disturbance(pipe_frequency=error, lock_in=lock_in)
-                motion = verification(
-                    system, windows, [one], objective, samples=_TABLE_SAMPLES, seed=self.settings.seed, quick=True
+                return verification(
+                    modes, [one], Objective(), samples=_TABLE_SAMPLES, seed=self.settings.seed, quick=True
                 ).motion
-                if not self.problem.within.moves:
-                    return motion
-                others = other_motions_at(self._rival_case(rival), error, self.problem.most_mass_ratio)
-                return joined([motion, *others])
 
             rows = in_threads(row, self.settings.errors)
             self.found.table[name] = tuple(row.pipe_peak for row in rows)
@@ -424,22 +441,23 @@ class _Designing:
             return self.case
         return with_design(self.case, rival.design)
 
-    def _rival_system(self, rival: Rival) -> System:
-        return build_system(self._rival_case(rival))
-
     def _trade_off(self) -> None:
         """The best design under other force margins."""
         family = self.settings.family
         if family == "tuned":
             return
-        best = self.found.best
+        best, asked = self.found.best, self.settings.force_margin
+        # a mixture without a cubic spring has no detached curve at any force
+        corners = [one for one in (best,) if one is not None and math.isinf(one.force_margin)]
         self._step("force margins")
-        self._tier(family)  # finds its place once
+        sized_for = self.sized_for.get(best.design) if best is not None and best.design is not None else None
+        self.problem.tier(family)  # finds its place once
 
         def point(margin: float) -> tuple[MarginPoint | None, list[str]]:
-            if best is not None and best.design is not None and margin == self.settings.force_margin:
-                return MarginPoint(margin, best.design, best.value, best.worst_pipe_peak, best.verified, best.tier), []
-            kept, discarded = self._finalists(family, replace(self.limits, force_margin=margin))
+            # what is best with a margin and keeps more of it is best with more
+            if best is not None and asked <= margin <= max(best.force_margin, asked):
+                return _margin_point(margin, best), []
+            kept, discarded = self._finalists(family, replace(self.limits, force_margin=margin), sized_for=sized_for)
             if not kept:
                 return None, discarded
             design = kept[0].design
@@ -447,9 +465,9 @@ class _Designing:
             reason = self._beyond(design, checked.relative_peak)
             if reason:
                 return None, [*discarded, f"With a force margin of {margin:g}: {reason}."]
-            return MarginPoint(
-                margin, design, checked.value, checked.pipe_peak, checked.verified, checked.motion.tier
-            ), discarded
+            rival = _rival(_DEVICES[family], design, checked, margin)
+            known = (one for one in corners if (one.verified, -one.value) >= (rival.verified, -rival.value))
+            return _margin_point(margin, next(known, rival)), discarded
 
         for found, discarded in in_threads(point, self.settings.margins):
             self.found.discarded += discarded
@@ -542,5 +560,12 @@ def in_threads(function: Callable[[Any], Any], items: Sequence[Any]) -> list[Any
 
 def _rival(name: str, design: DesignedAbsorber | None, checked: Verification, force_margin: float) -> Rival:
     """A device as far as the search has come; `_Designing.whole` adds what the comparison needs."""
-    nominal = checked.motion if checked.nominal is None else checked.nominal.motion
+    nominal = joined([part.motion for part in checked.nominal]) if checked.nominal else checked.motion
     return Rival(name, design, checked.value, nominal, checked.motion, checked.disturbance, float(force_margin))
+
+
+def _margin_point(margin: float, rival: Rival) -> MarginPoint:
+    design = rival.design
+    if design is None:
+        raise RuntimeError("a force margin of no device")
+    return MarginPoint(margin, design, rival.value, rival.worst_pipe_peak, rival.verified, rival.tier)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -50,7 +51,12 @@ class Windows:
             return inside, inside
         return (lo, hi), (min(lo, self.wide[0] * r), max(hi, self.wide[1] * r))
 
-    def range(self, disturbance: Disturbance, reference: float) -> OperatingRange:
+    def includes(self, disturbance: Disturbance) -> bool:
+        """Whether any wind of the site excites the pipe under a disturbance."""
+        (lo, hi), _ = self.at(disturbance)
+        return lo < hi
+
+    def range(self, disturbance: Disturbance, reference: float = math.nan) -> OperatingRange:
         """Range of operation of a pipe under a disturbance, whose detuning counts from `reference` [rad/s]."""
         if self.nominal is not None and disturbance.pipe_frequency == 1:
             return self.nominal
@@ -66,6 +72,17 @@ class Windows:
         return exact_curve(changed, *wide, None, None if self.axis is None else self.axis.factor)
 
 
+class ExcitedMode(NamedTuple):
+    """A pipe with a device, as winds excite one of its modes: the system that mode governs, and where it is judged."""
+
+    system: System
+    windows: Windows
+
+    def is_detached(self, disturbance: Disturbance) -> bool:
+        """Whether it has a detached curve under a disturbance."""
+        return self.windows.includes(disturbance) and has_detached(self.windows.curve(self.system, disturbance))
+
+
 @dataclass(frozen=True)
 class ExactJudgement:
     """What the exact periodic responses of a design come to.
@@ -73,7 +90,7 @@ class ExactJudgement:
     Attributes
     ----------
     pipe_peak, relative_peak : float
-        Largest over all branches, frequencies and disturbances with the force given [m].
+        Largest over all branches, frequencies, modes and disturbances with the force given [m].
     disturbance : Disturbance
     frequency : float
         Where the pipe peak occurs.
@@ -82,7 +99,7 @@ class ExactJudgement:
     detached : bool
         Whether there is a detached curve with the force given.
     peaks : tuple of float
-        Largest pipe peak over the factor on the force [m], for every force and every disturbance.
+        Largest pipe peak over the factor on the force [m], for every mode, every force and every disturbance.
     unverified : tuple of str
     """
 
@@ -102,14 +119,17 @@ class ExactJudgement:
 
 
 def exact_judgement(
-    system: System, windows: Windows, disturbances: Sequence[Disturbance], forces: Sequence[float] = (1.0,)
+    modes: Sequence[ExcitedMode], disturbances: Sequence[Disturbance], forces: Sequence[float] = (1.0,)
 ) -> ExactJudgement:
     """All periodic responses of a design under all disturbances, with the first of the forces and with the others.
 
     A response that jumps up before the force has its margin shows in `peaks`.
     """
-    looks = [_look(system, windows, one, force) for force in forces for one in disturbances]
-    given = looks[: len(disturbances)]
+    looks, given = [], []
+    for mode in modes:
+        here = [_look(*mode, one, force) for force in forces for one in disturbances]
+        looks += here
+        given += here[: len(disturbances)]
     worst = max(given, key=lambda look: look.pipe_peak)
     return ExactJudgement(
         pipe_peak=worst.pipe_peak,
@@ -124,6 +144,8 @@ def exact_judgement(
 
 
 def _look(system: System, windows: Windows, disturbance: Disturbance, force: float) -> ExactJudgement:
+    if not windows.includes(disturbance):
+        return ExactJudgement(0.0, 0.0, disturbance, math.nan, -math.inf, False, (0.0,), ())
     window, _ = windows.at(disturbance)
     curve = windows.curve(system, disturbance.at_force(force))
     inside = (curve.frequency >= window[0]) & (curve.frequency <= window[1])
@@ -146,23 +168,31 @@ def has_detached(curve: ResponseCurve) -> bool:
     return any(detached and not odd for detached, odd in zip(curve.detached, curve.asymmetric, strict=True))
 
 
+def conditions_of(
+    modes: Sequence[ExcitedMode], disturbances: Sequence[Disturbance]
+) -> list[tuple[ExcitedMode, Disturbance]]:
+    """Every mode under every disturbance."""
+    return [(mode, one) for mode in modes for one in disturbances]
+
+
 def exact_birth(
-    system: System, windows: Windows, disturbances: Sequence[Disturbance], guess: float, most: float
+    conditions: Sequence[tuple[ExcitedMode, Disturbance]], guess: float, most: float
 ) -> tuple[float, float]:
     """Largest factor on the force known to be without, and least known to be with a detached curve, around a guess.
 
     Bisected to a thousandth; (most, inf) if none is met up to `most`. Starts from the guess, so that a detached curve
-    that ends again at more force is not stepped over if the guess is near its birth. The first disturbance is the one
-    expected to be critical; the others are asked at the end.
+    that ends again at more force is not stepped over if the guess is near its birth. The first of the conditions is the
+    one expected to be critical; the others are asked at the end.
     """
 
-    def detached(one: Disturbance, force: float) -> bool:
-        return has_detached(windows.curve(system, one.at_force(force)))
+    def detached(at: int, force: float) -> bool:
+        mode, one = conditions[at]
+        return mode.is_detached(one.at_force(force))
 
-    critical = disturbances[0]
-    for _ in range(len(disturbances)):
-        free, taken = _bisected(lambda force, one=critical: detached(one, force), guess, most)  # type: ignore[misc]
-        other = next((one for one in disturbances if one != critical and detached(one, free)), None)
+    critical = 0
+    for _ in conditions:
+        free, taken = _bisected(lambda force, at=critical: detached(at, force), guess, most)  # type: ignore[misc]
+        other = next((at for at in range(len(conditions)) if at != critical and detached(at, free)), None)
         if other is None or free == 0.0:
             break
         critical, guess = other, free

@@ -17,9 +17,8 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.design.absorber import DesignedAbsorber
 from frahm.design.disturbance import Disturbance
-from frahm.design.exact import ExactJudgement, Windows, exact_birth, exact_judgement
-from frahm.design.search import BIRTH, GROWTH, PEAKS, STROKE, Corrections, Limits, TierOne
-from frahm.systems import System
+from frahm.design.exact import ExactJudgement, ExcitedMode, conditions_of, exact_birth, exact_judgement
+from frahm.design.search import BIRTH, GROWTH, STROKE, Corrections, Limits, TierOne
 
 _ROUNDS = 6
 _SETTLED = 1e-3  # relative change of the exact peak that ends the rounds
@@ -56,8 +55,7 @@ class Finalist:
 
 def finalists(
     tier: TierOne,
-    system_of: Callable[[DesignedAbsorber], System],
-    windows: Windows,
+    modes_of: Callable[[DesignedAbsorber], Sequence[ExcitedMode]],
     disturbances: Sequence[Disturbance],
     limits: Limits,
     wary: bool = False,
@@ -82,9 +80,8 @@ def finalists(
                 break
             row, _ = found
             judged = tier.judge(row[None])
-            finalist, birth = _judged(tier, row, judged, system_of, windows, disturbances, limits, corrections)
-            rows = slice(PEAKS, PEAKS + len(tier.screening.conditions.forces))
-            ratio = float(np.max(np.resize(finalist.exact.peaks, rows.stop - PEAKS) / judged[0, rows]))
+            finalist, birth = _judged(tier, row, judged, modes_of, disturbances, limits, corrections)
+            ratio = float(np.max(tier.peak_ratios(finalist.exact.peaks, judged[0])))
             if ratio > (_JUMPED if wary else _HOPELESS):
                 tier.avoid(row)  # the exact equations have a branch there that no correction lets the closed form see
                 discarded.append(_jump(finalist))
@@ -100,49 +97,46 @@ def finalists(
             if kept and abs(finalist.predicted - last) < _SETTLED * last and short <= 0:
                 break
             last = finalist.predicted
-            corrections = _corrected(
-                corrections, judged[0], finalist, birth, decay if stable else -math.inf,
-                len(tier.screening.conditions.forces),
-            )  # fmt: skip
+            corrections = _corrected(tier, corrections, judged[0], finalist, birth, decay if stable else -math.inf)
             # where the closed form has its detached curves too early, it must not be asked for the whole margin
             tier = tier.reloaded(limits.force_margin / corrections.birth)
     return sorted(kept, key=lambda finalist: finalist.predicted), list(dict.fromkeys(discarded))
 
 
 def _judged(
-    tier: TierOne, row: Floats, judged: Floats, system_of: Callable[[DesignedAbsorber], System], windows: Windows,
+    tier: TierOne, row: Floats, judged: Floats, modes_of: Callable[[DesignedAbsorber], Sequence[ExcitedMode]],
     disturbances: Sequence[Disturbance], limits: Limits, corrections: Corrections,
 ) -> tuple[Finalist, float]:  # fmt: skip
     """The finalist, and the birth factor between what is known to be free and what is known not to be."""
     design = tier.space.absorber(row)
-    system = system_of(design)
+    modes = modes_of(design)
     forces = sorted({1.0, limits.force_margin}) if design.nonlinear else [1.0]
-    exact = exact_judgement(system, windows, disturbances, forces)
+    exact = exact_judgement(modes, disturbances, forces)
     free, taken = math.inf, math.inf
     if design.nonlinear:
         guess = judged[0, BIRTH] * corrections.birth
         most = FAR * limits.force_margin
-        order = np.argsort(tier.screening.births_by_disturbance(row), kind="stable")
-        critical_first = [disturbances[i] for i in order]
-        free, taken = exact_birth(system, windows, critical_first, guess if math.isfinite(guess) else most, most)
+        conditions = conditions_of(modes, disturbances)
+        order = np.argsort(tier.screening.births_by_condition(row), kind="stable")
+        critical_first = [conditions[i] for i in order]
+        free, taken = exact_birth(critical_first, guess if math.isfinite(guess) else most, most)
     as_exact = judged.copy()
     as_exact[0, GROWTH] = exact.growth_rate
-    rows = slice(PEAKS, PEAKS + len(tier.screening.conditions.forces))
-    as_exact[0, rows] = np.resize(exact.peaks, rows.stop - PEAKS)
+    as_exact[0, tier.peak_columns] = tier.peak_rows(exact.peaks)
     predicted = float(tier.objective.over_scatter(tier.values(as_exact, Corrections()))[0])
     known = free if math.isinf(taken) else free - _MISSED
     return Finalist(design, predicted, exact, known, math.isinf(taken)), 0.5 * (free + taken)
 
 
 def _corrected(
-    old: Corrections, judged: Floats, finalist: Finalist, birth: float, decay: float, rows: int
+    tier: TierOne, old: Corrections, judged: Floats, finalist: Finalist, birth: float, decay: float
 ) -> Corrections:
     """Corrections that make the closed form agree with the exact equations at this design."""
     exact = finalist.exact
     known = math.isfinite(judged[BIRTH]) and not finalist.open_ended
     offset = exact.growth_rate - judged[GROWTH]
     return Corrections(
-        peaks=np.clip(np.resize(exact.peaks, rows) / judged[PEAKS : PEAKS + rows], *_TRUSTED),
+        peaks=np.clip(tier.peak_ratios(exact.peaks, judged), *_TRUSTED),
         stroke=exact.relative_peak / judged[STROKE],
         birth=(birth - 1.5 * _MISSED) / judged[BIRTH] if known else old.birth,
         damping=decay + offset if math.isfinite(decay) and math.isfinite(offset) else old.damping,

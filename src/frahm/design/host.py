@@ -12,6 +12,7 @@ where g is the force of the absorber on the structure. This is exact for any num
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -106,8 +107,8 @@ class Host:
     @functools.cached_property
     def modal_mass(self) -> float:
         """Mass of the governing mode as felt at the absorber [kg]: 1/(n phi)^2 with phi of unit modal mass."""
-        phi = self._governing_mode
-        return float(1.0 / (self.attachment @ phi) ** 2)
+        moves = self.attachment @ self._governing_mode
+        return float(1.0 / moves**2) if moves else math.inf
 
     @functools.cached_property
     def modal_damping(self) -> float:
@@ -125,7 +126,13 @@ class Host:
     def output_ratio(self) -> float:
         """Displacement of the governing mode at the output over that at the absorber [-]."""
         phi = self._governing_mode
-        return float(abs(self.output @ phi / (self.attachment @ phi)))
+        return float(abs(self.output @ phi / (self.attachment @ phi))) if self.attachment @ phi else math.inf
+
+    def check_moves(self) -> None:
+        """Refuse an absorber that sits where the governing mode does not move."""
+        phi = self._governing_mode
+        if abs(self.attachment @ phi) < 1e-9 * np.max(np.abs(phi)):
+            raise ParameterError("absorbers[0]", "at a node", "a place where the governing mode moves")
 
     @functools.cached_property
     def _governing_mode(self) -> Floats:
@@ -135,8 +142,6 @@ class Host:
         squares, modes = scipy.linalg.eigh(self.stiffness + self.other_stiffness, self.mass)
         frequencies = np.sqrt(np.maximum(squares, 0.0))
         index = int(np.argmin(np.abs(frequencies - self.frequency)))
-        if abs(self.attachment @ modes[:, index]) < 1e-9 * np.max(np.abs(modes[:, index])):
-            raise ParameterError("absorbers[0]", "at a node", "a place where the governing mode moves")
         return np.asarray(modes[:, index])
 
     def conditions(

@@ -14,7 +14,7 @@ from frahm.assessment.fatigue import counted_band
 from frahm.case import Case
 from frahm.design.absorber import DesignedAbsorber, with_design
 from frahm.design.disturbance import Disturbance, disturbances
-from frahm.design.exact import Windows
+from frahm.design.exact import ExcitedMode, Windows
 from frahm.design.host import Host, Lift, host_of
 from frahm.design.objective import ClimateMean, Objective
 from frahm.design.screening import Screening
@@ -22,7 +22,7 @@ from frahm.design.search import Corrections, Limits, TierOne
 from frahm.design.settings import DesignSettings
 from frahm.design.space import design_space
 from frahm.errors import ParameterError
-from frahm.loads import OperatingRange, operating_range, vortex_shedding, wind_climate
+from frahm.loads import OperatingRange, operating_range, other_modes, vortex_shedding, wind_climate
 from frahm.systems import build_system
 
 WIDE = (0.7, 1.3)  # of the pipe's frequency: where the lift may lock in
@@ -40,6 +40,9 @@ class Problem:
     settings : DesignSettings
     objective : Objective
     windows : Windows
+        Of the governing mode.
+    other_windows : dict of int to Windows
+        Of the other modes that winds of the site excite, by their number.
     within : OperatingRange
         What the worst motion of every device is asked about.
     wide : tuple of float
@@ -47,18 +50,19 @@ class Problem:
     disturbances : list of Disturbance
     limits : Limits
     tiers : dict
-        Closed forms by family and force margin.
+        Closed forms by family, force margin and the mode they are sized for.
     """
 
     case: Case
     settings: DesignSettings
     objective: Objective
     windows: Windows
+    other_windows: dict[int, Windows]
     within: OperatingRange
     wide: tuple[float, float]
     disturbances: list[Disturbance]
     limits: Limits
-    tiers: dict[tuple[str, float], TierOne] = field(default_factory=dict)
+    tiers: dict[tuple[str, float, int | None], TierOne] = field(default_factory=dict)
     _places: dict[str, float | None] = field(default_factory=dict)
     _tried: int = 0
 
@@ -78,10 +82,11 @@ class Problem:
         moving = settings.scatter.pipe_frequency > 0
         within = _range(case, settings, objective)
         if within.over_wind:
-            axis = within.stretched(*_frequencies(settings)) if within.moves else within
-            windows = Windows(within.asked, within.asked, within.moves, axis, within)
+            windows = _over_wind(within, settings)
         else:
             windows = Windows(wide if moving else within.frequency, wide, moving, nominal=within)
+        others = other_modes(case, _most_mass_ratio(settings)) if within.moves else ()
+        other_windows = {_number(other): _over_wind(part, settings) for other, part in others}
         conditions = disturbances(
             settings.scatter, settings.quantile, settings.scatter_samples, settings.seed,
             lock_in=not within.over_wind,
@@ -90,16 +95,27 @@ class Problem:
         stroke = min(settings.most_stroke, math.inf if stops is None else stops.gap)
         limits = Limits(settings.force_margin, stroke, False, settings.spring_length, settings.spring_stress)
         asked = within if not objective.over_climate else _range(case, settings, Objective())
-        return cls(case, settings, objective, windows, asked, wide, conditions, limits)
+        return cls(case, settings, objective, windows, other_windows, asked, wide, conditions, limits)
 
     def check_host(self) -> None:
         """Refuse a case whose other absorbers are nonlinear, or whose absorber sits where nothing moves."""
         self._host(None if self.settings.position is None else self.settings.position[1])
 
-    @property
-    def windows_of_errors(self) -> Windows:
-        """Where a pipe off its frequency is looked at: its winds, or all frequencies a fixed lift may lock in to."""
-        return self.windows if self.within.over_wind else Windows(self.wide, self.wide, True)
+    def modes(self, case: Case) -> list[ExcitedMode]:
+        """A pipe with a device as winds excite each of its modes, the governing one first."""
+        others = [ExcitedMode(build_system(governed(case, k)), windows) for k, windows in self.other_windows.items()]
+        return [ExcitedMode(build_system(case), self.windows), *others]
+
+    def modes_of(self, design: DesignedAbsorber) -> list[ExcitedMode]:
+        """The pipe with a design, see `modes`."""
+        return self.modes(with_design(self.case, design))
+
+    def modes_of_errors(self, case: Case) -> list[ExcitedMode]:
+        """As `modes`, where a pipe off its frequency is looked at: all frequencies a fixed lift may lock in to."""
+        governing, *others = self.modes(case)
+        if not self.within.over_wind:
+            governing = governing._replace(windows=Windows(self.wide, self.wide, True))
+        return [governing, *others]
 
     @property
     def screened(self) -> int:
@@ -111,12 +127,15 @@ class Problem:
         """Largest mass ratio a design may have [-]."""
         return _most_mass_ratio(self.settings)
 
-    def tier(self, family: str, margin: float | None = None) -> TierOne:
-        """Closed form for a family, with the force given and with its margin, at its best place."""
+    def tier(self, family: str, margin: float | None = None, sized_for: int | None = None) -> TierOne:
+        """Closed form for a family, with the force given and with its margin, at its best place.
+
+        Springs and dampers are looked for around what suits the governing mode, or another one of `other_windows`.
+        """
         most = self.settings.force_margin if margin is None else margin
-        if (family, most) not in self.tiers:
-            self.tiers[family, most] = self._tier(family, most, self.place(family))
-        return self.tiers[family, most]
+        if (family, most, sized_for) not in self.tiers:
+            self.tiers[family, most, sized_for] = self._tier(family, most, self.place(family), sized_for)
+        return self.tiers[family, most, sized_for]
 
     def admits(self, design: DesignedAbsorber) -> bool:
         """Whether a design keeps the ranges of spring and damper."""
@@ -127,9 +146,9 @@ class Problem:
             for name, span in ranges.items()
         )
 
-    def avoid(self, family: str, design: DesignedAbsorber) -> None:
+    def avoid(self, family: str, design: DesignedAbsorber, sized_for: int | None = None) -> None:
         """Search a family no longer near a design that failed."""
-        tier = self.tier(family)
+        tier = self.tier(family, sized_for=sized_for)
         values = (design.rho2, design.linear, design.kappa, design.xi2, design.quintic)
         tier.avoid(np.array([value * self.case.pipe.mass for value in values]))
 
@@ -164,28 +183,39 @@ class Problem:
                     look(0.5 * (places[at] + places[other]))
         return min(sorted(known), key=lambda place: known[place])
 
-    def _host(self, place: float | None) -> Host:
+    def _host(self, place: float | None, mode: int | None = None) -> Host:
+        """The pipe as an absorber feels it, where a mode governs; by default that of the case."""
         ratio = self.settings.mass_ratio
         mass = ratio[0] if isinstance(ratio, tuple) else ratio
-        some = DesignedAbsorber(mass or 1.0, 0.0, 1.0, 0.0, position=place)
-        return host_of(build_system(with_design(self.case, some)))
+        case = with_design(self.case, DesignedAbsorber(mass or 1.0, 0.0, 1.0, 0.0, position=place))
+        return host_of(build_system(case if mode is None else governed(case, mode)))
 
-    def _tier(self, family: str, margin: float, place: float | None) -> TierOne:
-        windows, host = self.windows, self._host(place)
+    def _tier(self, family: str, margin: float, place: float | None, sized_for: int | None = None) -> TierOne:
+        host = self._host(place)
+        host.check_moves()
         forces = sorted({1.0, margin}) if family != "tuned" else [1.0]
-        lift: Lift | None = None if windows.axis is None else _lift(windows.axis)
-        wide = windows.wide if lift is None else windows.window
-        screening = Screening(
-            host,
-            host.conditions(
-                self.disturbances, windows.window, _RESPONSE_POINTS, moving=windows.moving, forces=forces, lift=lift
-            ),
-            host.conditions(self.disturbances, wide, _BIRTH_POINTS, moving=lift is None or windows.moving, lift=lift),
-            self._climate(host, place) if self.objective.over_climate else None,
+        others = () if self.objective.over_climate else self.other_windows.items()
+        screening = dataclasses.replace(
+            self._screening(host, self.windows, forces),
+            climate=self._climate(host, place) if self.objective.over_climate else None,
+            others=tuple(self._screening(self._host(place, mode), windows, forces) for mode, windows in others),
         )
         settings = self.settings if family == self.settings.family else self.settings.for_rival()
-        space = design_space(host, self.case.pipe.mass, family, settings)
+        sizing = host if sized_for is None else self._host(place, sized_for)
+        space = design_space(sizing, self.case.pipe.mass, family, settings)
         return TierOne(screening, dataclasses.replace(space, position=place), self.objective, self.limits)
+
+    def _screening(self, host: Host, windows: Windows, forces: list[float]) -> Screening:
+        """One mode under all disturbances: where the response counts, and where detached curves are looked for."""
+        lift: Lift | None = None if windows.axis is None else _lift(windows.axis)
+        wide = windows.wide if lift is None else windows.window
+        counts = host.conditions(
+            self.disturbances, windows.window, _RESPONSE_POINTS, moving=windows.moving, forces=forces, lift=lift
+        )
+        moving = lift is None or windows.moving
+        return Screening(
+            host, counts, host.conditions(self.disturbances, wide, _BIRTH_POINTS, moving=moving, lift=lift)
+        )
 
     def _climate(self, host: Host, place: float | None) -> ClimateMean:
         """Mean over the winds of the band, equally spaced in frequency and closer around the resonance."""
@@ -239,6 +269,22 @@ def _range(case: Case, settings: DesignSettings, objective: Objective) -> Operat
     if objective.over_climate:
         return operating_range(case, wind=counted_band(case))
     return operating_range(case, wind=settings.wind, most_mass_ratio=_most_mass_ratio(settings))
+
+
+def _over_wind(within: OperatingRange, settings: DesignSettings) -> Windows:
+    """The winds of a range, and those of every pipe that is off by as much as anything is asked about."""
+    axis = within.stretched(*_frequencies(settings)) if within.moves else within
+    return Windows(within.asked, within.asked, within.moves, axis, within)
+
+
+def governed(case: Case, mode: int) -> Case:
+    """The case of an elastic pipe whose lift is in step with a mode."""
+    return case.with_pipe(governing_mode=mode)
+
+
+def _number(case: Case) -> int:
+    """Which mode governs, of an elastic pipe."""
+    return int(case.pipe.governing_mode)  # type: ignore[union-attr]
 
 
 def _most_mass_ratio(settings: DesignSettings) -> float:

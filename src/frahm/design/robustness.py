@@ -11,11 +11,10 @@ import numpy as np
 
 from frahm.design.absorber import DesignedAbsorber
 from frahm.design.disturbance import Disturbance
-from frahm.design.exact import Windows, exact_judgement
+from frahm.design.exact import ExcitedMode, exact_judgement
 from frahm.design.objective import Objective
 from frahm.design.screening import Screening
 from frahm.design.verification import verification
-from frahm.systems import System
 
 TOLERANCES = (0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.1, 0.15)
 SLACK = 1.1  # the guarantee holds while the worst peak stays within ten per cent of the promise
@@ -60,7 +59,7 @@ class Sensitivity:
 
 
 def tolerance_band(
-    design: DesignedAbsorber, promise: float, system_of: Callable[[DesignedAbsorber], System], windows: Windows,
+    design: DesignedAbsorber, promise: float, modes_of: Callable[[DesignedAbsorber], Sequence[ExcitedMode]],
     disturbances: Sequence[Disturbance], seed: int,
 ) -> ToleranceBand:  # fmt: skip
     """The band by exact responses at all corners, held against attractors at the worst corner."""
@@ -69,7 +68,7 @@ def tolerance_band(
     for tolerance in TOLERANCES:
         found = []
         for corner in corners(design, tolerance):
-            exact = exact_judgement(system_of(corner), windows, disturbances)
+            exact = exact_judgement(modes_of(corner), disturbances)
             found.append((exact.pipe_peak, corner, exact.detached))
         peak, worst, _ = max(found, key=lambda item: item[0])
         if any(detached for _, _, detached in found):
@@ -81,7 +80,7 @@ def tolerance_band(
         kept = tolerance, peak, worst
     tolerance, peak, worst = kept
     seen = verification(
-        system_of(worst), windows, disturbances, Objective(), samples=_SAMPLES, seed=seed, refine=False, quick=True
+        modes_of(worst), disturbances, Objective(), samples=_SAMPLES, seed=seed, refine=False, quick=True
     )
     agree = seen.verified and seen.pipe_peak <= SLACK * promise
     return ToleranceBand(tolerance, peak, worst, agree, breaks)
@@ -99,7 +98,7 @@ def corners(design: DesignedAbsorber, tolerance: float) -> list[DesignedAbsorber
 
 
 def sensitivities(
-    design: DesignedAbsorber, system_of: Callable[[DesignedAbsorber], System], windows: Windows,
+    design: DesignedAbsorber, modes_of: Callable[[DesignedAbsorber], Sequence[ExcitedMode]],
     disturbances: Sequence[Disturbance], screening: Screening, host_mass: float,
 ) -> tuple[Sensitivity, ...]:  # fmt: skip
     """Slopes over +-2 % of every parameter: peaks by the exact responses, births by the closed form."""
@@ -109,7 +108,7 @@ def sensitivities(
         if not value:
             continue
         ends = [replace(design, **{name: value * (1 + sign * _STEP)}) for sign in (-1, 1)]
-        low, high = (exact_judgement(system_of(end), windows, disturbances).pipe_peak for end in ends)
+        low, high = (exact_judgement(modes_of(end), disturbances).pipe_peak for end in ends)
         rows = np.array([[host_mass * getattr(end, key) for key in _PARAMETERS] for end in ends])
         births = screening.births(rows) if design.nonlinear else np.array([math.inf, math.inf])
         slope = math.log(births[1] / births[0]) / (2 * _STEP) if np.all(np.isfinite(births)) else math.nan

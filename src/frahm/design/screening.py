@@ -6,7 +6,7 @@ import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,6 +33,8 @@ class Screening:
         Where detached curves are looked for; finer, because their range can be narrow.
     climate : ClimateMean, optional
         Mean over the wind climate, if one is asked for.
+    others : tuple of Screening
+        The other modes that winds excite, each under the same disturbances and forces.
     workers : int, optional
         Threads; one per core by default.
     """
@@ -41,7 +43,18 @@ class Screening:
     conditions: Conditions
     wide: Conditions
     climate: ClimateMean | None = None
+    others: tuple[Screening, ...] = ()
     workers: int | None = None
+
+    @property
+    def forces(self) -> Floats:
+        """Factors on the force [-] in the rows of every mode, (R,): those of the first mode, then of the next."""
+        return np.concatenate([mode.conditions.forces for mode in (self, *self.others)])
+
+    def reloaded(self, margin: float) -> Screening:
+        """The same with another factor on the force where it is not 1."""
+        others = tuple(mode.reloaded(margin) for mode in self.others)
+        return replace(self, conditions=self.conditions.reloaded(margin), others=others)
 
     def largest_pipe_amplitudes(self, designs: Floats, limit: float = math.inf) -> Floats:
         """Largest first-harmonic amplitude of the pipe [m], shape (D,), over all roots and conditions.
@@ -65,19 +78,19 @@ class Screening:
             births(wide.frequency, wide.a, wide.u, wide.absorber, designs[part], found[part])
 
         self._in_threads(run, len(designs))
-        return found
+        return np.min([found, *(mode.births(designs) for mode in self.others)], axis=0)
 
-    def births_by_disturbance(self, design: Floats) -> Floats:
-        """Least factor on the force [-] at which one design (5,) has a detached curve, for every disturbance."""
+    def births_by_condition(self, design: Floats) -> Floats:
+        """Least factor on the force [-] at a birth of one design (5,), for every mode and every disturbance."""
         wide = self.wide
         found = np.empty((len(wide.disturbances), 1))
         for row, into in enumerate(found):
             part = slice(row, row + 1)
             births(wide.frequency[part], wide.a[part], wide.u[part], wide.absorber[part], design[None], into)
-        return found[:, 0]
+        return np.concatenate([found[:, 0], *(mode.births_by_condition(design) for mode in self.others)])
 
     def responses(self, designs: Floats) -> tuple[Floats, Floats]:
-        """Largest pipe amplitude [m] in every row, (D, R); largest |Z| [m] and growth [1/s], (D, 2)."""
+        """Largest pipe amplitude [m] in every row of every mode, (D, R); largest |Z| [m] and growth [1/s], (D, 2)."""
         found = np.empty((len(designs), 2))
         peaks = np.empty((len(designs), len(self.conditions.forces)))
         c, host = self.conditions, self.host
@@ -90,7 +103,8 @@ class Screening:
             screened(*c.arrays, mode, designs[part], found[part], peaks[part])
 
         self._in_threads(run, len(designs))
-        return peaks, found
+        parts = [(peaks, found), *(mode.responses(designs) for mode in self.others)]
+        return np.hstack([part for part, _ in parts]), np.max([largest for _, largest in parts], axis=0)
 
     def climate_means(self, designs: Floats) -> Floats:
         """Means over the wind climate, (D, disturbances)."""
@@ -122,17 +136,23 @@ def fold_ceilings(screening: Screening, designs: Floats) -> Floats:
 
     m Omega^2 X = (k1 - m Omega^2 + n + i Omega c) Z has folds where 3 n^2 + 4 p n + p^2 + q^2 = 0 with
     p = k1 - m Omega^2 and q = Omega c, n = 3/4 k3 |Z|^2: the smaller root is the upper fold of the pipe. The largest
-    over all disturbances is taken. A part of the fifth power is left out.
+    over all disturbances and modes is taken. A part of the fifth power is left out.
     """
-    conditions = screening.conditions
+    moved = [mode for mode in (screening, *screening.others) if math.isfinite(mode.host.output_ratio)]
+    ceilings = np.array([_ceilings(mode.host, mode.conditions, designs) for mode in moved])
+    largest = np.max(ceilings, axis=0)
+    return np.where(largest > 0, largest, np.nan)
+
+
+def _ceilings(host: Host, conditions: Conditions, designs: Floats) -> Floats:
+    """Of one mode [m], (D,); 0 without a fold."""
     m, k1, k3, damper, _ = designs.T[:, None, :]
     springs, dampers = conditions.absorber.T[:, :, None]
-    W = screening.host.frequency * conditions.pipe_frequencies[:, None]
+    W = host.frequency * conditions.pipe_frequencies[:, None]
     p, q = springs * k1 - m * W * W, W * dampers * damper
     inside = p * p - 3 * q * q
     folded = (k3 > 0) & (p < 0) & (inside > 0)
     n = (-2 * p - np.sqrt(np.where(folded, inside, 0.0))) / 3
     Z = np.sqrt(np.where(folded, n / np.where(k3 > 0, 0.75 * springs * k3, 1.0), 0.0))
-    ceilings = screening.host.output_ratio * Z * np.hypot(p + n, q) / (m * W * W)
-    largest = np.max(np.where(folded, ceilings, 0.0), axis=0)
-    return np.where(np.any(folded, axis=0), largest, np.nan)
+    ceilings = host.output_ratio * Z * np.hypot(p + n, q) / (m * W * W)
+    return np.asarray(np.max(np.where(folded, ceilings, 0.0), axis=0))

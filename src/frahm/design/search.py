@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import copy
-import dataclasses
 import itertools
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -34,7 +34,7 @@ class Corrections:
     Attributes
     ----------
     peaks : ndarray, shape (R,), or float
-        Exact pipe peak over screened amplitude in every row of the conditions [-].
+        Exact pipe peak over screened amplitude in every row of the conditions of every mode [-].
     stroke : float
         Exact stroke over screened amplitude [-].
     birth : float
@@ -103,7 +103,7 @@ class TierOne:
 
     def judge(self, designs: Floats) -> Floats:
         """Stroke [m], growth [1/s], birth [-], ceiling [m], filling of the springs [-], pipe amplitudes over the force
-        [m] in all R rows, climate means of all disturbances: (D, 5 + R + C).
+        [m] in all R rows of every mode, climate means of all disturbances: (D, 5 + R + C).
         """  # noqa: D205
         self.count += len(designs)
         screening = self.screening
@@ -111,7 +111,24 @@ class TierOne:
         peaks, others = screening.responses(designs)
         filling = self.limits.filling(designs, _RESERVE * others[:, 0])
         means = screening.climate_means(designs)
-        return np.column_stack([others, births, ceilings, filling, peaks / screening.conditions.forces, means])
+        return np.column_stack([others, births, ceilings, filling, peaks / screening.forces, means])
+
+    @property
+    def peak_columns(self) -> slice:
+        """Columns of what is judged that hold the pipe amplitudes."""
+        return slice(PEAKS, PEAKS + len(self.screening.forces))
+
+    def peak_rows(self, peaks: Sequence[float]) -> Floats:
+        """Exact peaks in the rows of the amplitudes; those of a linear device are the same at every force."""
+        modes, disturbances = 1 + len(self.screening.others), len(self.screening.conditions.disturbances)
+        by_force = np.reshape(peaks, (modes, -1, disturbances))
+        rows = len(self.screening.forces) // (modes * disturbances)
+        return np.broadcast_to(by_force, (modes, rows, disturbances)).ravel()
+
+    def peak_ratios(self, peaks: Sequence[float], judged: Floats) -> Floats:
+        """Exact peaks over the amplitudes of a judged design; 1 where nothing excites the pipe."""
+        screened = judged[self.peak_columns]
+        return np.divide(self.peak_rows(peaks), screened, out=np.ones(len(screened)), where=screened > 0)
 
     def predicted(self, judged: Floats, limits: Limits, corrections: Corrections) -> Floats:
         """Value of the objective expected of judged designs, (D,); infinite where a limit is not kept."""
@@ -122,18 +139,17 @@ class TierOne:
     def values(self, judged: Floats, corrections: Corrections) -> Floats:
         """Values of the objective under every disturbance, expected of judged designs (D, ...)."""
         conditions, unstable = self.screening.conditions, judged[:, GROWTH] > 0
-        rows = PEAKS + len(conditions.forces)
+        columns = self.peak_columns
         if self.objective.over_climate:
-            return self.objective.of_means(judged[:, rows:], unstable)
+            return self.objective.of_means(judged[:, columns.stop :], unstable)
         # a response that jumps before the force has its margin shows at the larger force
-        by_force = (corrections.peaks * judged[:, PEAKS:rows]).reshape(len(judged), -1, len(conditions.disturbances))
+        by_force = (corrections.peaks * judged[:, columns]).reshape(len(judged), -1, len(conditions.disturbances))
         return self.objective.of_peaks(by_force.max(axis=1), unstable, np.nan_to_num(judged[:, CEILING]))
 
     def reloaded(self, margin: float) -> TierOne:
         """The same with another margin on the force, and the grid judged before to start from."""
         other = copy.copy(self)
-        conditions = self.screening.conditions.reloaded(margin)
-        other.screening = dataclasses.replace(self.screening, conditions=conditions)
+        other.screening = self.screening.reloaded(margin)
         return other
 
     def best(self, limits: Limits, corrections: Corrections) -> tuple[Floats, float] | None:

@@ -13,12 +13,12 @@ from frahm.assessment.fatigue import counted_band
 from frahm.attractors import BESIDE, WorstCase, WorstMotion, joined, worst_over
 from frahm.case import Case
 from frahm.design.disturbance import Disturbance
-from frahm.design.exact import Windows
+from frahm.design.exact import ExcitedMode
 from frahm.design.objective import Objective
 from frahm.errors import Outcome
 from frahm.harmonic_balance import is_linear
 from frahm.loads import operating_range
-from frahm.systems import System, build_system
+from frahm.systems import build_system
 
 _REFINEMENTS = 4
 _FARTHER = 2e-3  # of the frequency
@@ -37,14 +37,17 @@ class Verification:
         Largest over all attractors, frequencies and disturbances, every doubt included.
     disturbance : Disturbance
         Under which it occurs.
-    nominal : WorstCase or None
-        The worst of the pipe as given, if that was looked at.
+    mode : int
+        In which of the modes looked at it occurs, 0 being the governing one.
+    nominal : tuple of WorstCase
+        The worst of the pipe as given in every mode; empty if that was not looked at.
     """
 
     value: float
     motion: WorstMotion
     disturbance: Disturbance
-    nominal: WorstCase | None = None
+    mode: int = 0
+    nominal: tuple[WorstCase, ...] = ()
 
     @property
     def pipe_peak(self) -> float:
@@ -83,8 +86,7 @@ class Verification:
 
 
 def verification(
-    system: System,
-    windows: Windows,
+    modes: Sequence[ExcitedMode],
     disturbances: Sequence[Disturbance],
     objective: Objective,
     *,
@@ -98,25 +100,30 @@ def verification(
 ) -> Verification:
     """Worst case over all attractors under every disturbance; where these are a grid, with more beside the worst one.
 
-    With `quick` special points are looked at from farther away, where motions settle sooner.
+    The first of the modes is searched for all attractors; the others for their stable periodic responses, and for
+    attractors only where there is none. With `quick` special points are looked at from farther away, where motions
+    settle sooner.
 
     Raises
     ------
     KeyboardInterrupt
         If the search was interrupted.
     """
-    found: dict[Disturbance, WorstCase] = {}
+    found: dict[Disturbance, tuple[WorstCase, ...]] = {}
 
-    def look(one: Disturbance) -> None:
-        changed = one.at_force(force).of(system)
+    def worst_of_mode(mode: ExcitedMode, one: Disturbance) -> WorstCase:
+        changed = one.at_force(force).of(mode.system)
         worst = worst_over(
-            changed, windows.range(one, changed.reference_frequency), samples=samples, seed=seed,
+            changed, mode.windows.range(one, changed.reference_frequency), samples=samples, seed=seed,
             min_basin=min_basin, periods=periods, rms=objective.name == "rms",
-            beside=_FARTHER if quick else BESIDE,
+            beside=_FARTHER if quick else BESIDE, sampled=mode is modes[0],
         )  # fmt: skip
         if Outcome.INTERRUPTED.value in worst.unverified:
             raise KeyboardInterrupt
-        found[one] = worst
+        return worst
+
+    def look(one: Disturbance) -> None:
+        found[one] = tuple(worst_of_mode(mode, one) for mode in modes if mode is modes[0] or mode.windows.includes(one))
 
     for one in disturbances:
         look(one)
@@ -137,7 +144,7 @@ def is_grid(disturbances: Sequence[Disturbance]) -> bool:
     return plain and list(disturbances) == sorted(disturbances)
 
 
-def _beside_worst(found: dict[Disturbance, WorstCase], objective: Objective) -> list[Disturbance]:
+def _beside_worst(found: dict[Disturbance, tuple[WorstCase, ...]], objective: Objective) -> list[Disturbance]:
     """Middles of the gaps beside the worst frequency of the pipe."""
     grid = sorted(found)
     at = max(range(len(grid)), key=lambda i: _value(found[grid[i]], objective))
@@ -150,19 +157,21 @@ def _beside_worst(found: dict[Disturbance, WorstCase], objective: Objective) -> 
     ]
 
 
-def _value(worst: WorstCase, objective: Objective) -> float:
-    return worst.pipe_rms if objective.name == "rms" else worst.pipe_peak
+def _value(worst: Sequence[WorstCase], objective: Objective) -> float:
+    """Of the objective, for a pipe in every mode."""
+    return max(mode.pipe_rms if objective.name == "rms" else mode.pipe_peak for mode in worst)
 
 
-def _joined(found: dict[Disturbance, WorstCase], objective: Objective) -> Verification:
+def _joined(found: dict[Disturbance, tuple[WorstCase, ...]], objective: Objective) -> Verification:
     grid = sorted(found)
-    at = max(grid, key=lambda one: found[one].pipe_peak)
-    motions = [replace(found[one].motion, unverified=_named(one, found[one].unverified)) for one in grid]
-    nominal = next((found[one] for one in grid if replace(one, lock_in=True) == Disturbance()), None)
+    at = max(grid, key=lambda one: max(mode.pipe_peak for mode in found[one]))
+    motions = [replace(mode.motion, unverified=_named(one, mode.unverified)) for one in grid for mode in found[one]]
+    nominal = next((found[one] for one in grid if replace(one, lock_in=True) == Disturbance()), ())
     return Verification(
         value=float(objective.over_scatter(np.array([_value(found[one], objective) for one in grid]))),
         motion=joined(motions),
         disturbance=at,
+        mode=max(range(len(found[at])), key=lambda mode: found[at][mode].pipe_peak),
         nominal=nominal,
     )
 

@@ -1,15 +1,18 @@
 """Room `harmonic_balance`: exact periodic responses, every branch, with Floquet multipliers and special points."""
 
+from frahm.harmonic_balance.births import LOOKED_AHEAD, births_ahead
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.linear import check_rest, is_linear, linear_growth, linear_response, resonant_grid
 from frahm.harmonic_balance.responses import PeriodicResponse, periodic_responses_of, responses_on
 from frahm.harmonic_balance.search import Search, Track, begin, connected
 
 __all__ = [
+    "LOOKED_AHEAD",
     "PeriodicResponse",
     "Search",
     "Track",
     "begin",
+    "births_ahead",
     "check_rest",
     "connected",
     "find_branches",

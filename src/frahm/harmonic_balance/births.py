@@ -19,6 +19,7 @@ from frahm.continuation.dense import factorise, solve_factorised
 from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count, stiffness, unknowns
 from frahm.harmonic_balance.search import Search
 from frahm.harmonic_balance.seeds import Extreme, Seed
+from frahm.harmonic_balance.starts import starts_of
 
 MARGIN = 1e-6  # of the force: nearer to a birth it is not decided on which side of it a system lies
 _STEPS = np.array([3e-3, 3e-4])  # of ln a and of Omega, over which slopes are first compared
@@ -28,6 +29,7 @@ _FINEST = 1 / 64  # of a step along places where lambda turns over a: at shorter
 _SHARES = np.geomspace(0.7, 1.35, 28)  # of a, over which lambda is looked at
 _CLOSE = 0.1  # |ln lambda^2| up to which an extreme that was not located is told
 _FIRST_HARMONICS = 5
+LOOKED_AHEAD = 1.35  # factor on the force; first-harmonic extremes are known a little farther
 _ENOUGH = 1e-8  # truncation: lambda is then known far better than the margin
 
 
@@ -64,6 +66,24 @@ def seeds_beside(search: Search, extreme: Extreme) -> list[Seed]:
         elif abs(turn.size) < _CLOSE:
             search.undecided.append(turn.W)
     return seeds
+
+
+def births_ahead(search: Search) -> list[tuple[float, float]]:
+    """Factors on the force beyond 1 at which detached curves are born, ascending, and where [rad/s].
+
+    Those up to `LOOKED_AHEAD` whose first-harmonic extreme leads to an exact one; nothing is said of others.
+    """
+    found = []
+    for extreme in starts_of(search).extremes:
+        for turn in _turns(search, extreme) if extreme.sign > 0 else ():
+            place = _with_harmonics(search, extreme, turn)
+            located = None if place is None else _extreme(search, extreme, place)
+            if located is None:
+                continue
+            place, bend = located
+            if bend and place.size > 0 and search.lo < place.W < search.hi:
+                found.append((math.exp(0.5 * place.size), place.W))
+    return sorted(found)
 
 
 def _turns(search: Search, start: Extreme) -> list[_Place]:

@@ -1,5 +1,6 @@
 import json
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,10 +19,13 @@ from frahm.analysis.margin import detached_curve_margin
 from frahm.analysis.response import exact_response, slow_flow_response
 from frahm.analysis.section import Section
 from frahm.analysis.wind import wind
+from frahm.loads import operating_range
 from frahm.plotting.gallery import drawings
 from frahm.reproduction.motions import equilibrium_state
+from frahm.response.exact import exact_curve
 from frahm.slow_flow import slow_flow_of
 from frahm.slow_flow.motion import slow_velocity
+from frahm.systems import with_parameters
 from frahm.time_integration import integrate_batch
 
 CASE = frahm.load_case("jacket-pipe")
@@ -172,9 +176,27 @@ def test_over_the_winds_the_margin_is_bisected_to_the_birth(monkeypatch, birth):
     work = Work(case, Section(results={"response": {"harmonic-balance": curve}}, data={"response": None}))
     monkeypatch.setattr(margin_module, "_detached_count", lambda _, force: int(force >= birth))
     monkeypatch.setattr(margin_module, "_born", lambda _, force: {"force": force})
+    monkeypatch.setattr(margin_module, "_next_birth", lambda _, most: None)
     found = detached_curve_margin(work).results["response"]["harmonic-balance"]["detached_curve_margin"]
     assert found["force_margin"] < birth <= found["next_event"]["force"]
     assert found["force_margin"] == pytest.approx(found["next_event"]["force"], rel=1e-3)
+
+
+def test_a_detached_curve_that_merges_soon_after_its_birth_ends_the_margin():
+    """Born at 1.0643 times the force, merged at 1.085: between the factors at which the curve is looked at."""
+    law = {"kind": "cubic", "stiffness": 2.169e7, "damping": 73.7}
+    mast = frahm.load_case(Path(__file__).parents[2] / "cases" / "table.yaml")
+    case = frahm.load_case(mast.to_dict() | {"absorbers": [{"name": "sink", "mass": 18.0, "law": law}]})
+    system, within = frahm.build_system(case), operating_range(case)
+
+    def count(force):
+        curve = exact_curve(with_parameters(system, force=force), *within.frequency, None, within.factor)
+        return sum(curve.detached)
+
+    assert [count(force) for force in (1.0, 1.0635, 1.065, 1.08, 1.1)] == [0, 0, 1, 1, 0]
+    found = margin_at(case)
+    assert found["force_margin"] == found["next_event"]["force"] == pytest.approx(1.0643, abs=1e-4)
+    assert (found["exists"], found["next_event"]["change"]) == (False, "appears")
 
 
 def test_no_margin_where_no_detached_curve_can_be():

@@ -1,0 +1,75 @@
+"""A device is judged in every mode that winds of the site excite, from the closed form to the promise."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import frahm
+from frahm.design import DesignSettings, verified_designs, with_design
+from frahm.design.disturbance import Disturbance
+from frahm.design.exact import conditions_of, exact_birth, exact_judgement
+from frahm.design.objective import Objective
+from frahm.design.problem import Problem
+from frahm.design.search import BIRTH
+from frahm.design.settings import settings_for
+from frahm.design.verification import verification
+
+TABLE = frahm.load_case(Path(__file__).parents[2] / "cases" / "table.yaml")
+SINK = frahm.DesignedAbsorber(0.02, 0.0, 20000.0, 0.0819)  # its detached curve is born in mode 2
+
+
+def problem_of(**changes):
+    return Problem.of(TABLE, settings_for(TABLE, 0.02, changes=changes))
+
+
+def stiff_in_mode_2():
+    """The mast with its first mode well damped and the second hardly: this one moves most."""
+    case = TABLE.to_dict()
+    first, second = case["pipe"]["modes"]
+    case["pipe"]["modes"] = [{**first, "damping_ratio": 0.03, "lift_length": 3.0},
+                             {**second, "damping_ratio": 0.001, "lift_length": 8.0}]  # fmt: skip
+    return frahm.load_case(case)
+
+
+def test_the_closed_form_has_the_amplitudes_of_every_mode():
+    problem = problem_of()
+    tier = problem.tier("tuned")
+    device = tier.space.absorber(tier.space.designs(np.full((1, 2), 0.5))[0])
+    judged = tier.judge(tier.space.designs(np.full((1, 2), 0.5)))[0, tier.peak_columns]
+    exact = exact_judgement(problem.modes_of(device), problem.disturbances)
+    assert len(exact.peaks) == len(problem.modes_of(device)) == 2
+    np.testing.assert_allclose(judged, exact.peaks, rtol=0.03)  # the grid passes a sharp resonance by
+    assert tier.peak_ratios(exact.peaks, tier.judge(tier.space.designs(np.full((1, 2), 0.5)))[0]).shape == judged.shape
+
+
+def test_a_birth_in_another_mode_ends_the_margin():
+    problem = problem_of()
+    modes = problem.modes_of(SINK)
+    row = np.array([[TABLE.pipe.mass * value for value in (0.02, 0.0, 20000.0, 0.0819, 0.0)]])
+    tier = problem.tier("sink")
+    assert tier.judge(row)[0, BIRTH] == pytest.approx(1.168, abs=0.02)
+    first, second = tier.screening.births_by_condition(row[0])
+    assert second < first
+    free, taken = exact_birth(conditions_of(modes, problem.disturbances), 1.168, 1.3)
+    assert free < 1.1683 < taken + 1e-3
+    governing, _ = exact_birth(conditions_of(modes[:1], problem.disturbances), 1.168, 1.3)
+    assert governing == 1.3
+
+
+def test_what_is_verified_is_the_worst_of_all_modes():
+    problem, case = problem_of(samples=8), with_design(TABLE, SINK)
+    found = verification(problem.modes(case), [Disturbance(lock_in=False)], Objective(), samples=8, seed=1)
+    worst = frahm.worst_case(case, samples=8, min_basin=0.0)
+    assert worst.others
+    assert found.pipe_peak == found.value == pytest.approx(worst.motion.pipe_peak, rel=1e-9)
+    assert [one.pipe_peak for one in found.nominal][found.mode] == found.pipe_peak
+
+
+def test_a_damper_is_sized_for_the_mode_that_moves_most():
+    case = stiff_in_mode_2()
+    (best,) = verified_designs(case, DesignSettings(samples=8, mass_ratio=0.02), ("tuned",))
+    assert best.verified
+    tuned = np.sqrt(best.design.linear / best.design.rho2) / (2 * np.pi)
+    assert tuned == pytest.approx(5.2, rel=0.03)
+    assert best.value == pytest.approx(frahm.worst_case(with_design(case, best.design), samples=8).pipe_peak, rel=1e-6)
