@@ -30,8 +30,8 @@ from frahm.design.settings import DesignSettings, settings_for
 from frahm.design.study import DesignStudy, MarginPoint, Rival, first_of, headline
 from frahm.design.verdict import verdict
 from frahm.design.verification import Verification, climate_verification, verification
-from frahm.systems import build_system
 from frahm.errors import ParameterError
+from frahm.systems import build_system
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
