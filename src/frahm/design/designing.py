@@ -176,9 +176,7 @@ class _Designing:
             rival = self.designed(family)
             if family == self.settings.family:
                 if rival is None:
-                    reasons = "".join(f" {reason}" for reason in self.found.discarded[-1:])
-                    hint = f"No design keeps them; what binds: {self._binding(family)}.{reasons}"
-                    raise ParameterError("limits", self._limits_text(), "limits that a design can keep", hint=hint)
+                    raise self._none_keeps(family)
                 self.found.best = rival
             if rival is not None:
                 self.found.rivals[rival.name] = rival
@@ -197,6 +195,18 @@ class _Designing:
 
     def _binding(self, family: str) -> str:
         return self.problem.tier(family).binding(self.limits)
+
+    def _none_keeps(self, family: str) -> ParameterError:
+        """The refusal if no design of a family keeps the limits: what binds, and which other family has one."""
+        reasons = "".join(f" {reason}" for reason in self.found.discarded[-1:])
+        hint = f"No design keeps them; what binds: {self._binding(family)}.{reasons}"
+        for other in FAMILIES:
+            name = _DEVICES[other]
+            rival = None if other in (family, "mixed") else self.found.rivals.get(name) or self.designed(other)
+            if rival is not None and rival.verified:
+                hint += f" The best {name} keeps them, with a {self.objective.title} of"
+                hint += f" {self.objective.shown(rival.value)}: --family {other}."
+        return ParameterError("limits", self._limits_text(), "limits that a design can keep", hint=hint)
 
     def _limits_text(self) -> str:
         parts = [f"force margin {self.settings.force_margin:g}"]
@@ -446,17 +456,14 @@ class _Designing:
         family = self.settings.family
         if family == "tuned":
             return
-        best, asked = self.found.best, self.settings.force_margin
-        # a mixture without a cubic spring has no detached curve at any force
-        corners = [one for one in (best,) if one is not None and math.isinf(one.force_margin)]
+        best = self.found.best
+        if best is None or best.design is None:
+            return
         self._step("force margins")
-        sized_for = self.sized_for.get(best.design) if best is not None and best.design is not None else None
+        sized_for = self.sized_for.get(best.design)
         self.problem.tier(family)  # finds its place once
 
-        def point(margin: float) -> tuple[MarginPoint | None, list[str]]:
-            # what is best with a margin and keeps more of it is best with more
-            if best is not None and asked <= margin <= max(best.force_margin, asked):
-                return _margin_point(margin, best), []
+        def candidate(margin: float) -> tuple[Rival | None, list[str]]:
             kept, discarded = self._finalists(family, replace(self.limits, force_margin=margin), sized_for=sized_for)
             if not kept:
                 return None, discarded
@@ -465,14 +472,21 @@ class _Designing:
             reason = self._beyond(design, checked.relative_peak)
             if reason:
                 return None, [*discarded, f"With a force margin of {margin:g}: {reason}."]
-            rival = _rival(_DEVICES[family], design, checked, margin)
-            known = (one for one in corners if (one.verified, -one.value) >= (rival.verified, -rival.value))
-            return _margin_point(margin, next(known, rival)), discarded
+            return _rival(_DEVICES[family], design, checked, margin), discarded
 
-        for found, discarded in in_threads(point, self.settings.margins):
+        # what is best with a margin and keeps more of it is best with more
+        asked = self.settings.force_margin
+        best = replace(best, force_margin=max(best.force_margin, asked))
+        others = [margin for margin in self.settings.margins if not asked <= margin <= best.force_margin]
+        candidates = [best]
+        for found, discarded in in_threads(candidate, others):
             self.found.discarded += discarded
-            if found is not None:
-                self.found.trade_off.append(found)
+            candidates += [] if found is None else [found]
+        for margin in self.settings.margins:
+            keeping = [one for one in candidates if one.force_margin >= margin]
+            if keeping:
+                least = min(keeping, key=lambda one: (not one.verified, one.value))
+                self.found.trade_off.append(_margin_point(margin, least))
 
     def _best_case(self, design: DesignedAbsorber) -> Case:
         """The case with a design, asked about the same range with the same states, so that a run of it agrees."""

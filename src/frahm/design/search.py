@@ -76,7 +76,8 @@ class Limits:
         if self.stress is None:
             return np.zeros(len(designs))
         springs = coil_springs(designs[:, LINEAR], designs[:, CUBIC], stroke, self.room, self.stress)
-        return np.where(designs[:, CUBIC] > 0, springs.solid / springs.free, 0.0)
+        there = designs[:, CUBIC] > 0
+        return np.divide(springs.solid, springs.free, out=np.zeros(len(designs)), where=there)
 
 
 @dataclass(eq=False)

@@ -300,7 +300,9 @@ def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
         doubts = (
             *doubts,
             f"Beyond {lo:.4g} ... {hi:.4g} m/s the shedding frequency falls with the wind: winds there can excite the"
-            " pipe, too, and were not looked at.",
+            " pipe, too, and were not looked at"
+            + (". The wind of the case, " if not lo <= speed <= hi else ".")
+            + (f"{speed:g} m/s, is one of them." if not lo <= speed <= hi else ""),
         )
     found = _over(law, vortex_shedding(case).lift, (lo, hi), case.pipe.frequency, site, tuple(basis), True)
     return replace(found, doubts=(*doubts, *_left_out(case, law, most_mass_ratio)), band=bands[0])
@@ -421,14 +423,14 @@ def _about_band(case: Case, band: tuple[float, float], elsewhere: bool) -> str:
 
 
 def _ascending(law: WindExcitation, lo: float, hi: float, inside: float) -> tuple[float, float, bool]:
-    """The largest stretch of [lo, hi] around a wind inside in which the shedding frequency ascends with the wind."""
+    """The largest stretch of [lo, hi] around or next to a wind in which the shedding frequency ascends with it."""
     if law.is_monotone(lo, hi):
         return lo, hi, False
     edges = np.unique([lo, hi, *law.kinks(lo, hi)])
     good = [law.is_monotone(a, b) for a, b in pairwise(edges)]
-    at = int(np.clip(np.searchsorted(edges, inside, side="right") - 1, 0, len(good) - 1))
-    if not good[at]:
-        law.speed(1.0, float(edges[at]), float(edges[at + 1]))  # refuses, and says why
+    if not any(good):
+        law.speed(1.0, lo, hi)  # refuses, and says why
+    at = min(np.flatnonzero(good), key=lambda i: max(edges[i] - inside, inside - edges[i + 1]))
     first = last = at
     while first > 0 and good[first - 1] and law.is_monotone(edges[first - 1], edges[last + 1]):
         first -= 1

@@ -206,9 +206,17 @@ def error_rows(study: DesignStudy) -> list[tuple[str, ...]]:
 
 
 def hardware_rows(study: DesignStudy) -> list[tuple[str, ...]]:
-    """Name, value, unit, origin of every line of the hardware sheet."""
+    """Name, value, unit, origin of every line of the hardware sheet, in the units of a workshop."""
     items = study.hardware.items if study.hardware else ()
-    return [(item.name, number(item.value), item.unit, item.basis) for item in items]
+    return [(item.name, *_as_made(item.value, item.unit), item.basis) for item in items]
+
+
+def _as_made(value: float, unit: str) -> tuple[str, str]:
+    columns = {"m": (readable.in_mm, "mm"), "Pa": (readable.in_mpa, "MPa")}
+    if unit not in columns:
+        return number(value), unit
+    shown, made = columns[unit]
+    return shown(value), made
 
 
 def sensitivity_rows(study: DesignStudy) -> list[tuple[str, ...]]:
