@@ -178,7 +178,7 @@ class AttractorSet(Sequence[Attractor]):
         rate, low, high = -100 * np.expm1(-rates * thousand)
         return (
             f"The {attractor.kind} motion with a pipe peak of {attractor.pipe_peak:.4g} m is left in the end: in 1000 "
-            f"periods by {rate:.2g} % of the motions on it (95 % interval {low:.2g} to {high:.2g} %). Its share is "
+            f"periods by {rate:.3g} % of the motions on it (95 % interval {low:.2g} to {high:.2g} %). Its share is "
             f"that after {self.periods} periods."
         )
 

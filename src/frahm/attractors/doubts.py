@@ -45,7 +45,7 @@ def doubts_of(
     for at in sorted(surveys):
         for other in surveys[at]:
             if other.kind == "unsettled" and other.basin_fraction >= min_basin:
-                share = f"{100 * other.basin_fraction:.2g} % of the motions at Omega = {at:.6g} rad/s"
+                share = f"{100 * other.basin_fraction:.3g} % of the motions at Omega = {at:.6g} rad/s"
                 doubts.append(f"{share} are unsettled: {other.outcome.value}")
     stable = curve.stable_or_limit & np.isfinite(curve.pipe_peak)
     met = [*beyond, *zip(curve.frequency[stable].tolist(), curve.pipe_peak[stable].tolist(), strict=True)]

@@ -69,7 +69,7 @@ def _assembled(system: System, tracks: list[Track], search: Search, settings: di
         doubtful += _not_located(number, track) + _beyond_numbers(number, track)
         if settings["harmonics"] == "auto" and np.max(track.truncations) > _ROUGH:
             doubtful.append(
-                f"Branch {number}: up to {100 * np.max(track.truncations):.2g} % of the forces lie beyond the highest"
+                f"Branch {number}: up to {100 * np.max(track.truncations):.3g} % of the forces lie beyond the highest"
                 " harmonic there is room for, as stops and friction make them; its peaks are no better than that."
             )
     doubtful += unfinished(tracks)

@@ -195,7 +195,7 @@ def _responses(point: Point, asked: Any) -> Found:
     doubts += found.unverified
     residual = max((response.residual for response in found), default=0.0)
     if residual > _ROUGH and point.case.analysis.harmonics == "auto":
-        doubts += (f"Up to {100 * residual:.2g} % of the forces lie beyond the highest harmonic there is room for.",)
+        doubts += (f"Up to {100 * residual:.3g} % of the forces lie beyond the highest harmonic there is room for.",)
     return Found(
         {
             "stable_pipe_peak": _largest([response.pipe_peak for response in stable]),
@@ -240,7 +240,7 @@ def _attractors(point: Point, asked: Any) -> Found:
     worst = max(counting, key=_peak)
     unsettled = [motion for motion in found if motion.kind == "unsettled"]
     doubts = tuple(
-        f"{100 * motion.basin_fraction:.2g} % of the motions are unsettled: {motion.outcome.value}"
+        f"{100 * motion.basin_fraction:.3g} % of the motions are unsettled: {motion.outcome.value}"
         for motion in unsettled
         if motion.basin_fraction >= asked.min_basin
     )
