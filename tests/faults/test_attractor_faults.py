@@ -183,3 +183,14 @@ def test_the_worst_of_motions_none_of_which_has_a_peak_warns_of_nothing(monkeypa
     found = frahm.worst_case(CASE, detuning=(-0.3, -0.299), samples=2, periods=100)
     assert np.isnan(found.not_excluded)
     assert not found.verified
+
+
+def test_a_plane_from_which_every_motion_escapes_has_a_map_without_attractors():
+    law = frahm.Polynomial((0.0, 0.0, -1.0), 0.0)
+    soft = frahm.System(np.eye(1), [[0.1]], [[1.0]], [3.0], [frahm.Element((1.0,), law)], name="softening")
+    data = frahm.basin_map(soft, frequency=0.9, resolution=4)
+    assert data.sizes["attractor"] == 0
+    assert np.all(data.label == -2)
+    assert (
+        frahm.find_attractors(soft, frequency=0.9, samples=8).to_dataset().sizes["attractor"] == 1
+    )  # those that escape

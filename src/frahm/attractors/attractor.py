@@ -182,6 +182,16 @@ class AttractorSet(Sequence[Attractor]):
             f"that after {self.periods} periods."
         )
 
+    def unsettled(self, least: float, where: str = "") -> list[str]:
+        """A sentence for every share of the motions, of at least `least`, of which no attractor is known."""
+        sentences = []
+        for one in self:
+            if one.kind == "unsettled" and one.basin_fraction >= least:
+                waited = f"they had not settled after {self.periods} periods of the excitation."
+                why = waited if one.outcome is Outcome.NOT_CONVERGED else one.outcome.value
+                sentences.append(f"{100 * one.basin_fraction:.3g} % of the motions{where} are unsettled: {why}")
+        return sentences
+
     def to_dataset(self) -> xr.Dataset:
         """All attractors, labelled, along the dimension `attractor`."""
         import xarray as xr
@@ -199,9 +209,8 @@ class AttractorSet(Sequence[Attractor]):
         )  # fmt: skip
         return xr.Dataset(variables, attrs=self._attributes())
 
-    def _column(self, name: str, width: int = 0) -> Floats:
-        values = np.array([getattr(attractor, name) for attractor in self], dtype=float)
-        return values.reshape((len(self), width) if width else (len(self),))
+    def _column(self, name: str, *width: int) -> Floats:
+        return np.array([getattr(attractor, name) for attractor in self], dtype=float).reshape(len(self), *width)
 
     def _attributes(self) -> dict[str, Any]:
         from frahm import __version__

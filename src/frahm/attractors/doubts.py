@@ -43,10 +43,7 @@ def doubts_of(
     if any(survey.outcome is Outcome.INTERRUPTED for survey in surveys.values()):
         doubts.append(Outcome.INTERRUPTED.value)
     for at in sorted(surveys):
-        for other in surveys[at]:
-            if other.kind == "unsettled" and other.basin_fraction >= min_basin:
-                share = f"{100 * other.basin_fraction:.3g} % of the motions at Omega = {at:.6g} rad/s"
-                doubts.append(f"{share} are unsettled: {other.outcome.value}")
+        doubts += surveys[at].unsettled(min_basin, f" at Omega = {at:.6g} rad/s")
     stable = curve.stable_or_limit & np.isfinite(curve.pipe_peak)
     met = [*beyond, *zip(curve.frequency[stable].tolist(), curve.pipe_peak[stable].tolist(), strict=True)]
     for end in range(2):

@@ -239,12 +239,7 @@ def _attractors(point: Point, asked: Any) -> Found:
     counting = [motion for motion in found if motion.basin_fraction >= asked.min_basin] or list(found)
     worst = max(counting, key=_peak)
     unsettled = [motion for motion in found if motion.kind == "unsettled"]
-    doubts = tuple(
-        f"{100 * motion.basin_fraction:.3g} % of the motions are unsettled: {motion.outcome.value}"
-        for motion in unsettled
-        if motion.basin_fraction >= asked.min_basin
-    )
-    doubts += found.unverified
+    doubts = (*found.unsettled(asked.min_basin), *found.unverified)
     return Found(
         {
             "pipe_peak": worst.pipe_peak,
