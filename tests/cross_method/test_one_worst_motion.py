@@ -8,7 +8,7 @@ import pytest
 import frahm
 from frahm.analysis import analyse
 from frahm.design.tuned import textbook_damper
-from frahm.loads import operating_range, other_modes
+from frahm.loads import operating_range, other_ranges
 
 CASES = Path(__file__).parents[1] / "cases"
 MEMBERS = ("tube", "table", "chimney", "stiff", "calm", "brace", "long_tube", "brace 2", "table 2", "long_tube 2")
@@ -37,7 +37,7 @@ def with_device(name, kind):
 
 def largest_over(case, width):
     """The largest stable periodic response of each mode over its range made wider."""
-    ranges = [(case, operating_range(case)), *other_modes(case)]
+    ranges = [(case, operating_range(case)), *other_ranges(case)]
     curves = [frahm.frequency_response(part, wind=within.widened(width).wind) for part, within in ranges]
     return max(float(np.max(curve.pipe_peak[curve.stable])) for curve in curves)
 

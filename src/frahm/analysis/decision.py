@@ -22,7 +22,7 @@ from frahm.design.tuned import textbook_damper
 from frahm.design.verification import verification
 from frahm.errors import ParameterError
 from frahm.harmonic_balance import is_linear
-from frahm.loads import OperatingRange, operating_range, other_modes, vortex_shedding
+from frahm.loads import OperatingRange, operating_range, other_ranges, vortex_shedding
 from frahm.systems import build_system
 
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ def settings_mass_ratio(case: Case) -> float:
 
 
 def _device(name: str, case: Case, within: OperatingRange) -> Device:
-    asked = [(case, within), *(other_modes(case) if within.moves else ())]
+    asked = [(case, within), *(other_ranges(case) if within.moves else ())]
     parts = [worst_over(build_system(one), part, samples=1, min_basin=0.0, seed=1) for one, part in asked]
     motion = joined([with_stress(one, part) for (one, _), part in zip(asked, parts, strict=True)])
     return Device(name, case, motion, lasting_motions(parts))

@@ -49,7 +49,7 @@ def fatigue(work: Work) -> Section:
 def _mode(part: FatigueDamage) -> dict[str, object]:
     """Damage of another mode over the winds that excite it."""
     return {
-        "mode": part.case.pipe.governing_mode,  # type: ignore[union-attr]
+        "mode": part.case.pipe.governing_mode,
         "wind_speeds": [float(part.lower[0]), float(part.upper[-1])],
         "damage_with": part.damage_with,
         "damage_without": part.damage_without,

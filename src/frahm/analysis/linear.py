@@ -18,7 +18,7 @@ from frahm.attractors import WorstMotion, joined, worst_over
 from frahm.case import Case
 from frahm.harmonic_balance import linear_growth, resonant_grid
 from frahm.harmonic_balance.condensation import linear_part
-from frahm.loads import OperatingRange, other_modes
+from frahm.loads import OperatingRange, other_ranges
 from frahm.response import ResponseCurve, with_winds
 from frahm.systems import System, build_system
 
@@ -116,7 +116,7 @@ def bare_worst(work: Work) -> WorstMotion:
 
 def others_of(work: Work) -> tuple[tuple[Case, OperatingRange], ...]:
     """The other modes of an elastic pipe that the range of operation includes."""
-    return other_modes(work.case) if work.range.moves else ()
+    return other_ranges(work.case) if work.range.moves else ()
 
 
 def linear_response(work: Work) -> Section:

@@ -90,7 +90,7 @@ def _range_row(work: Work) -> dict[str, Any]:
 
 
 def _mode_row(case: Case, motion: WorstMotion) -> dict[str, Any]:
-    return {"mode": case.pipe.governing_mode, "natural_frequency": case.pipe.frequency, **motion.row()}  # type: ignore[union-attr]
+    return {"mode": case.pipe.governing_mode, "natural_frequency": case.pipe.frequency, **motion.row()}
 
 
 def _nonlinear(work: Work) -> bool:

@@ -33,7 +33,7 @@ def modes(work: Work) -> Section:
         return Section()
     checks = (_convergence(work),) if isinstance(case.pipe, Tube) else ()
     return Section(
-        results={"modes": {"governing": case.pipe.governing_mode, "modes": _rows(case, modal)}},  # type: ignore[union-attr]
+        results={"modes": {"governing": case.pipe.governing_mode, "modes": _rows(case, modal)}},
         data={"modes": case.pipe.beam_modes.to_dataset() if isinstance(case.pipe, Tube) else _table(modal)},
         checks=tuple(check for check, _ in checks),
         unverified=(

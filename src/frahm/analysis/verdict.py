@@ -69,9 +69,9 @@ def lock_in(work: Work) -> Section:
     speed, here = work.case.wind.speed, motions[0]
     bands = [lock_in_band(case) for case in (work.case, *(case for case, _ in others_of(work)))]
     modes = [worst["of_governing_mode"], *(row["pipe_peak"] for row in work.done.results["other_modes"])]
-    mode = next((at for at, band in enumerate(bands) if band.low <= speed <= band.high), 0)
-    band, resonant = bands[mode], modes[mode]
-    inside = bool(band.low <= speed <= band.high)
+    held = [at for at, band in enumerate(bands) if band.low <= speed <= band.high]
+    mode = max(held, key=lambda at: modes[at], default=0)
+    band, resonant, inside = bands[mode], modes[mode], bool(held)
     return Section(results={"lock_in": {
         "design_wind": speed, "band": [band.low, band.high], "standing": band.standing, "inside": inside,
         "at_design_wind": here["pipe_peak"], "kind": here["kind"],

@@ -10,7 +10,7 @@ import numpy as np
 from frahm.assessment.damage import FatigueDamage
 from frahm.assessment.fatigue import fatigue_damage
 from frahm.case import Case
-from frahm.loads import operating_range, other_modes
+from frahm.loads import operating_range, other_ranges
 
 
 def damage_of_modes(case: Case) -> tuple[FatigueDamage, ...]:
@@ -21,8 +21,8 @@ def damage_of_modes(case: Case) -> tuple[FatigueDamage, ...]:
     """
     first = fatigue_damage(case)
     named = case.fatigue is not None and case.fatigue.wind_speeds is not None
-    others = () if named or not operating_range(case).moves else other_modes(case)
-    return (first, *(fatigue_damage(other, wind=part.wind) for other, part in others))
+    others = () if named or not operating_range(case).moves else other_ranges(case)
+    return (first, *(fatigue_damage(other, wind=part.winds) for other, part in others))
 
 
 def total_damage(parts: tuple[FatigueDamage, ...]) -> dict[str, Any]:

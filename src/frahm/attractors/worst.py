@@ -20,7 +20,7 @@ from frahm.case import load_case
 from frahm.errors import Outcome, ParameterError, check_count, check_number
 from frahm.harmonic_balance import PeriodicResponse, is_linear, responses_on
 from frahm.harmonic_balance.quasi_static import searched_window
-from frahm.loads import OperatingRange, frequency_range, operating_range, other_modes
+from frahm.loads import OperatingRange, frequency_range, operating_range, other_ranges
 from frahm.response import ResponseCurve
 from frahm.response.exact import curve_and_branches
 from frahm.systems import System, as_system, build_system, detuning_of, excitation_window, with_parameters
@@ -62,7 +62,7 @@ class WorstCase:
     curve : ResponseCurve
         Every periodic response over the range and half as much beside it.
     others : tuple of WorstCase
-        Of the other modes that winds of the site excite, each over the winds that do; `motion` is the worst of all.
+        Of what else winds of the site excite, see `frahm.loads.other_ranges`; `motion` is the worst of all.
     """
 
     motion: WorstMotion
@@ -201,7 +201,8 @@ def worst_case(
     if isinstance(case_or_system, System) or not within.moves:
         return first
     settings |= {"region": None, "sampled": False}
-    others = [worst_over(build_system(case), part, **settings) for case, part in other_modes(load_case(case_or_system))]
+    beside = other_ranges(load_case(case_or_system))
+    others = [worst_over(build_system(case), part, **settings) for case, part in beside]
     return worst_of((first, *others))
 
 

@@ -123,8 +123,20 @@ def joined(motions: Sequence[WorstMotion]) -> WorstMotion:
         stress_range=stressed.stress_range,
         stress_frequency=stressed.stress_frequency,
         stress_section=stressed.stress_section,
-        range="; ".join(dict.fromkeys(motion.range for motion in motions)),
+        range=_together(list(dict.fromkeys(motion.range for motion in motions))),
         tier=" and ".join(dict.fromkeys(motion.tier for motion in motions)),
         searched=sum(motion.searched for motion in motions),
         unverified=tuple(dict.fromkeys(doubt for motion in motions for doubt in motion.unverified)),
     )
+
+
+_WINDS = ("winds of ", " m/s, each with its own lift")
+
+
+def _together(ranges: Sequence[str]) -> str:
+    """Several ranges in words, what is the same in all of them said once."""
+    before, behind = _WINDS
+    if not all(text.startswith(before) and text.endswith(behind) for text in ranges):
+        return "; ".join(ranges)
+    inner = [text[len(before) : -len(behind)] for text in ranges]
+    return before + ", ".join(inner[:-1]) + (" and " if len(inner) > 1 else "") + inner[-1] + behind

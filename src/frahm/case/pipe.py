@@ -52,6 +52,11 @@ class Pipe(Section):
         """Mass over length [kg/m]."""
         return self.mass / self.length
 
+    @property
+    def governing_mode(self) -> int:
+        """The only mode there is."""
+        return 1
+
     @functools.cached_property
     def modal(self) -> ModalPipe:
         """The pipe as its single mode."""

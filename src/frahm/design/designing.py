@@ -299,7 +299,9 @@ class _Designing:
 
     def _worst_mode(self, checked: Verification | None) -> int | None:
         """Number of the mode in which the pipe moves most; None for the governing one."""
-        return None if checked is None else (None, *self.problem.other_windows)[checked.mode]
+        governing = self.case.pipe.governing_mode
+        mode = governing if not checked or not checked.mode else self.problem.others[checked.mode - 1][0]
+        return None if mode == governing else mode
 
     def _cornered(self, family: str) -> Rival | None:
         """For the mixture, the better of its corners: the optimum over the family is never worse than either."""

@@ -22,7 +22,7 @@ from frahm.design.search import Corrections, Limits, TierOne
 from frahm.design.settings import DesignSettings
 from frahm.design.space import design_space
 from frahm.errors import ParameterError
-from frahm.loads import OperatingRange, operating_range, other_modes, vortex_shedding, wind_climate
+from frahm.loads import OperatingRange, operating_range, other_ranges, vortex_shedding, wind_climate
 from frahm.systems import build_system
 
 WIDE = (0.7, 1.3)  # of the pipe's frequency: where the lift may lock in
@@ -41,8 +41,8 @@ class Problem:
     objective : Objective
     windows : Windows
         Of the governing mode.
-    other_windows : dict of int to Windows
-        Of the other modes that winds of the site excite, by their number.
+    others : tuple of (int, Windows)
+        Number of the governing mode, and where, of what else winds of the site excite, see `other_ranges`.
     within : OperatingRange
         What the worst motion of every device is asked about.
     wide : tuple of float
@@ -57,7 +57,7 @@ class Problem:
     settings: DesignSettings
     objective: Objective
     windows: Windows
-    other_windows: dict[int, Windows]
+    others: tuple[tuple[int, Windows], ...]
     within: OperatingRange
     wide: tuple[float, float]
     disturbances: list[Disturbance]
@@ -85,8 +85,8 @@ class Problem:
             windows = _over_wind(within, settings)
         else:
             windows = Windows(wide if moving else within.frequency, wide, moving, nominal=within)
-        others = other_modes(case, _most_mass_ratio(settings)) if within.moves else ()
-        other_windows = {_number(other): _over_wind(part, settings) for other, part in others}
+        beside = other_ranges(case, _most_mass_ratio(settings)) if within.moves else ()
+        others = tuple((other.pipe.governing_mode, _over_wind(part, settings)) for other, part in beside)
         conditions = disturbances(
             settings.scatter, settings.quantile, settings.scatter_samples, settings.seed,
             lock_in=not within.over_wind,
@@ -95,7 +95,7 @@ class Problem:
         stroke = min(settings.most_stroke, math.inf if stops is None else stops.gap)
         limits = Limits(settings.force_margin, stroke, False, settings.spring_length, settings.spring_stress)
         asked = within if not objective.over_climate else _range(case, settings, Objective())
-        return cls(case, settings, objective, windows, other_windows, asked, wide, conditions, limits)
+        return cls(case, settings, objective, windows, others, asked, wide, conditions, limits)
 
     def check_host(self) -> None:
         """Refuse a case whose other absorbers are nonlinear, or whose absorber sits where nothing moves."""
@@ -103,7 +103,7 @@ class Problem:
 
     def modes(self, case: Case) -> list[ExcitedMode]:
         """A pipe with a device as winds excite each of its modes, the governing one first."""
-        others = [ExcitedMode(build_system(governed(case, k)), windows) for k, windows in self.other_windows.items()]
+        others = [ExcitedMode(build_system(governed(case, k)), windows) for k, windows in self.others]
         return [ExcitedMode(build_system(case), self.windows), *others]
 
     def modes_of(self, design: DesignedAbsorber) -> list[ExcitedMode]:
@@ -130,7 +130,7 @@ class Problem:
     def tier(self, family: str, margin: float | None = None, sized_for: int | None = None) -> TierOne:
         """Closed form for a family, with the force given and with its margin, at its best place.
 
-        Springs and dampers are looked for around what suits the governing mode, or another one of `other_windows`.
+        Springs and dampers are looked for around what suits the governing mode, or another one of `others`.
         """
         most = self.settings.force_margin if margin is None else margin
         if (family, most, sized_for) not in self.tiers:
@@ -194,7 +194,7 @@ class Problem:
         host = self._host(place)
         host.check_moves()
         forces = sorted({1.0, margin}) if family != "tuned" else [1.0]
-        others = () if self.objective.over_climate else self.other_windows.items()
+        others = () if self.objective.over_climate else self.others
         screening = dataclasses.replace(
             self._screening(host, self.windows, forces),
             climate=self._climate(host, place) if self.objective.over_climate else None,
@@ -278,13 +278,8 @@ def _over_wind(within: OperatingRange, settings: DesignSettings) -> Windows:
 
 
 def governed(case: Case, mode: int) -> Case:
-    """The case of an elastic pipe whose lift is in step with a mode."""
-    return case.with_pipe(governing_mode=mode)
-
-
-def _number(case: Case) -> int:
-    """Which mode governs, of an elastic pipe."""
-    return int(case.pipe.governing_mode)  # type: ignore[union-attr]
+    """The case where the lift is in step with a mode."""
+    return case if mode == case.pipe.governing_mode else case.with_pipe(governing_mode=mode)
 
 
 def _most_mass_ratio(settings: DesignSettings) -> float:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -28,6 +28,7 @@ from frahm.loads.vortex import vortex_shedding
 
 _KNOTS = 200  # of the lift over the frequency where a table bends it; a cubic between them is exact to about 1e-10
 _SAME = 1e-9  # relative difference below which an end of the range is an end of the site's winds
+_CALM, _STORM = 1e-3, 1e3  # times the winds of a range: no range is stretched beyond
 _NEAR_ZERO = 0.5  # a window widened below zero frequency ends at this share of its lower end instead
 HALF = 0.5  # what a range is widened by when its worst is put to the test
 
@@ -43,7 +44,8 @@ class OperatingRange:
     reference : float
         Frequency the detuning counts from [rad/s]; NaN where a system has none.
     wind : (float, float) or None
-        Wind speeds that shed at the ends [m/s]; None for a window of the frequency at one fixed lift.
+        Wind speeds that shed at the ends [m/s], the higher one first where the shedding frequency falls with the wind;
+        None for a window of the frequency at one fixed lift.
     law : WindExcitation or None
         Shedding frequency and lift over the wind.
     lift : float
@@ -81,6 +83,11 @@ class OperatingRange:
     def over_wind(self) -> bool:
         """Whether shedding frequency and lift follow the wind."""
         return self.wind is not None
+
+    @property
+    def winds(self) -> tuple[float, float] | None:
+        """Lowest and highest wind [m/s]; None for a window of the frequency at one fixed lift."""
+        return None if self.wind is None else (min(self.wind), max(self.wind))
 
     @property
     def detuning(self) -> tuple[float, float]:
@@ -132,13 +139,28 @@ class OperatingRange:
         ends = self.asked[0] * low, self.asked[1] * high
         if self.wind is None or self.law is None:
             return replace(self, frequency=ends)
-        least, most = (f(a, b) for f, a, b in zip((max, min), self.site, self.law.speed_range, strict=True))
-        lo = max((float(U) for U in self.law.speeds_of(ends[0]) if self.wind[0] >= U), default=least)
-        hi = min((float(U) for U in self.law.speeds_of(ends[1]) if self.wind[1] <= U), default=most)
-        lo, hi = min(self.wind[0], max(lo, least)), max(self.wind[1], min(hi, most))
-        lo, hi, _ = _ascending(self.law, lo, hi, self.wind[0])
+        first, last = self._reach
+        whole = float(self.law.frequency(first)), float(self.law.frequency(last))
+        lo = first if whole[0] >= ends[0] else float(self.law.speed(ends[0], first, last))
+        hi = last if whole[1] <= ends[1] else float(self.law.speed(ends[1], first, last))
         found = _over(self.law, self.lift, (lo, hi), self.reference, self.site, self.basis, self.moves)
         return replace(found, doubts=self.doubts, band=self.asked)
+
+    @property
+    def _reach(self) -> tuple[float, float]:
+        """The longest stretch of winds [m/s] around the range on which the shedding frequency goes on as in it."""
+        if self.wind is None or self.law is None:
+            raise RuntimeError("a window at one fixed lift has no winds")
+        inner = sorted(self.wind)
+        least, most = (f(a, b) for f, a, b in zip((max, min), self.site, self.law.speed_range, strict=True))
+        least = min(max(least, _CALM * inner[0]), inner[0])
+        # beyond twice the highest frequency asked about, or the last knot of a table, nothing turns that matters
+        most = max(min(most, _STORM * inner[1]), inner[1])
+        stretches = self.law.stretches(least, most)
+        own = max(stretches, key=lambda one: min(max(one), inner[1]) - max(min(one), inner[0]))
+        ascending = own[0] <= own[1]
+        lo, hi = min(own[0], own[1], inner[0]), max(own[0], own[1], inner[1])
+        return (lo, hi) if ascending else (hi, lo)
 
     def widened(self, share: float = HALF) -> OperatingRange:
         """The range with its width grown by a share, as far as the site and the tables of the case reach."""
@@ -148,21 +170,28 @@ class OperatingRange:
             return replace(self, frequency=(lo - more if lo > more else _NEAR_ZERO * lo, hi + more))
         lo, hi = self.wind
         more = 0.5 * share * (hi - lo)
+        outer = [lo - more, hi + more]
         least, most = (f(a, b) for f, a, b in zip((max, min), self.site, self.law.speed_range, strict=True))
-        down = max(lo - more if lo > more else _NEAR_ZERO * lo, min(least, lo))
-        up = min(hi + more, max(most, hi))
-        if not self.law.is_monotone(down, lo):
-            down = lo
-        if not self.law.is_monotone(hi, up):
-            up = hi
-        return _over(self.law, self.lift, (down, up), self.reference, self.site, self.basis, self.moves)
+        for end, inner in enumerate(self.wind):
+            lowest = outer[end] if outer[end] > 0 else _NEAR_ZERO * inner
+            outer[end] = min(max(lowest, min(least, inner)), max(most, inner))
+            if not self.law.is_monotone(*((outer[0], inner) if end == 0 else (inner, outer[1]))):
+                outer[end] = inner
+        return _over(self.law, self.lift, (outer[0], outer[1]), self.reference, self.site, self.basis, self.moves)
 
     def closed(self, end: int) -> bool:
-        """Whether nothing lies beyond an end (0 or 1), because the site has no such winds."""
-        if self.wind is None:
+        """Whether nothing lies beyond an end (0 or 1).
+
+        Because the site has no such winds, or because the shedding frequency turns there: what is beyond is another
+        range.
+        """
+        if self.wind is None or self.law is None:
             return False
-        beyond = (self.site[0] * (1 + _SAME) >= self.wind[0], self.wind[1] >= self.site[1] * (1 - _SAME))
-        return beyond[end]
+        rising, here = self.wind[0] < self.wind[1], self.wind[end]
+        upwards = rising == (end == 1)
+        if here >= self.site[1] * (1 - _SAME) if upwards else here <= self.site[0] * (1 + _SAME):
+            return True
+        return not self.law.goes_on(here, upwards, rising)
 
     def place(self, frequency: float) -> str:
         """Where in the range a frequency is, for a sentence."""
@@ -176,7 +205,7 @@ class OperatingRange:
     def text(self) -> str:
         """The range in words."""
         if self.wind is not None:
-            return f"winds of {self.wind[0]:.4g} ... {self.wind[1]:.4g} m/s, each with its own lift"
+            return f"winds of {min(self.wind):.4g} ... {max(self.wind):.4g} m/s, each with its own lift"
         if math.isnan(self.reference):
             return (
                 f"excitation frequencies of {self.frequency[0]:.5g} ... {self.frequency[1]:.5g} rad/s, one lift for all"
@@ -278,34 +307,53 @@ def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
     law, (site, about_site) = wind_excitation(case), site_winds(case)
     bands, speed = excited_bands(case, most_mass_ratio), case.wind.speed
     elsewhere = any(lo <= float(law.frequency(speed)) <= hi for lo, hi in bands[1:])
-    ends, reached = _winds_of(law, bands[0]), law.speed_range
+    reached = law.speed_range
     basis = [_about_band(case, bands[0], elsewhere), about_site]
     if not all(law.speeds_of(W).size for W in bands[0]):
         basis.append(
             f"Strouhal number and lift are given for {reached[0]:.3g} ... {reached[1]:.3g} m/s only: nothing is known"
             " beyond."
         )
-    wanted = ends if ends and elsewhere else [speed, *ends]
+    ends = _winds_of(law, bands[0])
     doubts = _beyond_the_site(speed, ends, site)
+    lo, hi = _wanted(case, law, bands[0], elsewhere)
     if doubts:  # none of these winds is one of the site: they are looked at as if they were
-        site = (min(*wanted, site[0]), max(*wanted, site[1]))
-    lo = max(min(wanted), min(site[0], speed), reached[0])
-    hi = min(max(wanted), max(site[1], speed), reached[1])
+        site = (min(lo, site[0]), max(hi, site[1]))
     if not lo < hi * (1 - _SAME):
         hi = max(hi, speed)
         lo = max(hi * LOCK_IN_RATIOS[0], reached[0], site[0] if site[0] < hi else 0.0)
         basis.append(f"No wind of the site excites the mode: the strongest are looked at, {lo:.4g} ... {hi:.4g} m/s.")
-    lo, hi, shortened = _ascending(law, lo, hi, min(max(speed, lo), hi))
-    if shortened:
-        doubts = (
-            *doubts,
-            f"Beyond {lo:.4g} ... {hi:.4g} m/s the shedding frequency falls with the wind: winds there can excite the"
-            " pipe, too, and were not looked at"
-            + (". The wind of the case, " if not lo <= speed <= hi else ".")
-            + (f"{speed:g} m/s, is one of them." if not lo <= speed <= hi else ""),
+    stretch = _main_stretch(law, lo, hi, speed)
+    if stretch != (lo, hi):
+        basis.append(
+            f"The shedding frequency turns over the wind: {min(stretch):.4g} ... {max(stretch):.4g} m/s are one range,"
+            " the other winds that excite the mode are others."
         )
-    found = _over(law, vortex_shedding(case).lift, (lo, hi), case.pipe.frequency, site, tuple(basis), True)
-    return replace(found, doubts=(*doubts, *_left_out(case, law, most_mass_ratio)), band=bands[0])
+    found = _over(law, vortex_shedding(case).lift, stretch, case.pipe.frequency, site, tuple(basis), True)
+    return replace(found, doubts=doubts, band=bands[0])
+
+
+def _wanted(case: Case, law: WindExcitation, band: tuple[float, float], elsewhere: bool) -> tuple[float, float]:
+    """Lowest and highest wind [m/s] that excites the governing mode; its design wind, unless it excites another one."""
+    site, _ = site_winds(case)
+    ends, speed, reached = _winds_of(law, band), case.wind.speed, law.speed_range
+    wanted = ends if ends and elsewhere else [speed, *ends]
+    if _beyond_the_site(speed, ends, site):
+        site = (min(*wanted, site[0]), max(*wanted, site[1]))
+    lo = max(min(wanted), min(site[0], speed), reached[0])
+    return lo, min(max(wanted), max(site[1], speed), reached[1])
+
+
+def _main_stretch(law: WindExcitation, lo: float, hi: float, speed: float) -> tuple[float, float]:
+    """The stretch on which the shedding frequency rises that holds a wind [m/s], or is next to it.
+
+    Where it rises nowhere, the nearest on which it falls.
+    """
+    if law.is_monotone(lo, hi):
+        return lo, hi
+    stretches = law.stretches(lo, hi)
+    rising = [one for one in stretches if one[0] < one[1]]
+    return min(rising or stretches, key=lambda one: max(min(one) - speed, speed - max(one), 0.0))
 
 
 def _beyond_the_site(speed: float, ends: list[float], site: tuple[float, float]) -> tuple[str, ...]:
@@ -319,18 +367,33 @@ def _beyond_the_site(speed: float, ends: list[float], site: tuple[float, float])
     )
 
 
-def other_modes(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, OperatingRange], ...]:
-    """The other modes of an elastic pipe that winds of its site excite: a case that each governs, and its range.
+def other_ranges(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, OperatingRange], ...]:
+    """What else winds of the site excite beside the range of operation: a case with the mode that governs, and a range.
 
-    Vortices lock in to the mode they excite, so that the lift is in step with it and not with the governing one. Only
-    of a case whose range was left to itself; a range that was given is all that is asked about.
+    The other modes of an elastic pipe: vortices lock in to the mode they excite, so that the lift is in step with it
+    and not with the governing one. And every mode again on each further stretch of winds, where the shedding frequency
+    turns over the wind. Only of a case whose range was left to itself; a range that was given is all that is asked
+    about.
     """
     if case.analysis.wind is not None or case.analysis.detuning is not None:
         return ()
     law, (site, _) = wind_excitation(case), site_winds(case)
-    found = _beside(case, most_mass_ratio)
-    return tuple((other, _of_another_mode(other, law, band, winds, site))
-                 for other, band, winds in found if ascending_stretches(law, *winds))  # fmt: skip
+    main, bands = _of_the_site(case, most_mass_ratio), excited_bands(case, most_mass_ratio)
+    elsewhere = any(lo <= float(law.frequency(case.wind.speed)) <= hi for lo, hi in bands[1:])
+    winds = _wanted(case, law, bands[0], elsewhere)
+    found = []
+    if winds[0] < winds[1] * (1 - _SAME) and not law.is_monotone(*winds):
+        stretches = [one for one in law.stretches(*winds) if not _overlap(one, main.wind)]
+        found += [(case, part) for part in _ranges_of(case, law, bands[0], stretches, main.site)]
+    for other, band, winds in _beside(case, most_mass_ratio):
+        stretches = [winds] if law.is_monotone(*winds) else law.stretches(*winds)
+        found += [(other, part) for part in _ranges_of(other, law, band, stretches, site)]
+    return tuple(found)
+
+
+def _overlap(one: tuple[float, float], other: tuple[float, float] | None) -> bool:
+    """Whether two stretches of winds have more than an end in common."""
+    return other is not None and max(min(one), min(other)) < min(max(one), max(other)) * (1 - _SAME)
 
 
 def _beside(case: Case, most_mass_ratio: float) -> Iterator[tuple[Case, tuple[float, float], tuple[float, float]]]:
@@ -351,46 +414,22 @@ def _beside(case: Case, most_mass_ratio: float) -> Iterator[tuple[Case, tuple[fl
             yield other, band, (lo, hi)
 
 
-def left_out(case: Case, most_mass_ratio: float = 0.0) -> tuple[str, ...]:
-    """Sentences on other modes that are not looked at in full, because the shedding frequency falls with the wind."""
-    if case.analysis.wind is not None or case.analysis.detuning is not None:
-        return ()
-    partly = (doubt for _, within in other_modes(case, most_mass_ratio) for doubt in within.doubts)
-    return (*partly, *_left_out(case, wind_excitation(case), most_mass_ratio))
-
-
-def _left_out(case: Case, law: WindExcitation, most_mass_ratio: float) -> tuple[str, ...]:
-    """Sentences on other modes that winds excite only where the shedding frequency falls with the wind."""
-    return tuple(
-        f"Winds of {winds[0]:.4g} ... {winds[1]:.4g} m/s excite mode {other.pipe.governing_mode}, but the shedding"  # type: ignore[union-attr]
-        " frequency falls with the wind in all of them: it was not looked at."
-        for other, _, winds in _beside(case, most_mass_ratio)
-        if not ascending_stretches(law, *winds)
-    )
-
-
-def _of_another_mode(
-    case: Case, law: WindExcitation, band: tuple[float, float], winds: tuple[float, float], site: tuple[float, float]
-) -> OperatingRange:
-    """The winds that excite a mode; where the shedding frequency falls with the wind only a part, and a doubt."""
-    mode, omega = case.pipe.governing_mode, case.pipe.frequency  # type: ignore[union-attr]
-    lo, hi = max(ascending_stretches(law, *winds), key=lambda one: _nearness(law, one, omega))
-    doubts: tuple[str, ...] = ()
-    if (lo, hi) != winds:
-        doubts = (
-            f"Winds of {winds[0]:.4g} ... {winds[1]:.4g} m/s excite mode {mode}, but the shedding frequency falls with"
-            f" the wind in part of them: it was looked at in {lo:.4g} ... {hi:.4g} m/s only.",
-        )
-    basis = (f"Winds of {lo:.4g} ... {hi:.4g} m/s excite mode {mode}, with the lift in step with it.",)
-    found = _over(law, vortex_shedding(case).lift, (lo, hi), omega, site, basis, True)
-    return replace(found, doubts=doubts, band=band)
-
-
-def _nearness(law: WindExcitation, winds: tuple[float, float], omega: float) -> tuple[bool, float]:
-    """Whether a stretch of winds sheds at a frequency [rad/s], and its strongest wind, or else its width [m/s]."""
-    low, high = (float(law.frequency(U)) for U in winds)
-    inside = low <= omega <= high
-    return inside, winds[1] if inside else winds[1] - winds[0]
+def _ranges_of(
+    case: Case, law: WindExcitation, band: tuple[float, float], stretches: Iterable[tuple[float, float]],
+    site: tuple[float, float],
+) -> Iterator[OperatingRange]:  # fmt: skip
+    """The parts of stretches of winds that shed in the band of the governing mode [rad/s]."""
+    lift, omega = vortex_shedding(case).lift, case.pipe.frequency
+    mode = "the governing mode" if isinstance(case.pipe, Pipe) else f"mode {case.pipe.governing_mode}"
+    for first, last in stretches:
+        low, high = max(band[0], float(law.frequency(first))), min(band[1], float(law.frequency(last)))
+        if not low < high * (1 - _SAME):
+            continue
+        ends = [first if low > band[0] else float(law.speed(low, first, last)),
+                last if high < band[1] else float(law.speed(high, first, last))]  # fmt: skip
+        basis = f"Winds of {min(ends):.4g} ... {max(ends):.4g} m/s excite {mode}, with the lift in step with it."
+        found = _over(law, lift, (ends[0], ends[1]), omega, site, (basis,), True)
+        yield replace(found, band=band)
 
 
 def excited_bands(case: Case, most_mass_ratio: float = 0.0) -> list[tuple[float, float]]:
@@ -422,46 +461,19 @@ def _about_band(case: Case, band: tuple[float, float], elsewhere: bool) -> str:
     )
 
 
-def _ascending(law: WindExcitation, lo: float, hi: float, inside: float) -> tuple[float, float, bool]:
-    """The largest stretch of [lo, hi] around or next to a wind in which the shedding frequency ascends with it."""
-    if law.is_monotone(lo, hi):
-        return lo, hi, False
-    edges = np.unique([lo, hi, *law.kinks(lo, hi)])
-    good = [law.is_monotone(a, b) for a, b in pairwise(edges)]
-    if not any(good):
-        law.speed(1.0, lo, hi)  # refuses, and says why
-    at = min(np.flatnonzero(good), key=lambda i: max(edges[i] - inside, inside - edges[i + 1]))
-    first = last = at
-    while first > 0 and good[first - 1] and law.is_monotone(edges[first - 1], edges[last + 1]):
-        first -= 1
-    while last + 1 < len(good) and good[last + 1] and law.is_monotone(edges[first], edges[last + 2]):
-        last += 1
-    return float(edges[first]), float(edges[last + 1]), True
-
-
-def ascending_stretches(law: WindExcitation, lo: float, hi: float) -> list[tuple[float, float]]:
-    """Every stretch of winds [m/s] in which the shedding frequency ascends with the wind, as long as each can be."""
-    edges = [float(edge) for edge in np.unique([lo, hi, *law.kinks(lo, hi)])]
-    found: list[tuple[float, float]] = []
-    for a, b in pairwise(edges):
-        if not law.is_monotone(a, b):
-            continue
-        joined = found and found[-1][1] == a and law.is_monotone(found[-1][0], b)
-        found.append((found.pop()[0], b) if joined else (a, b))
-    return found
-
-
 def _factor(law: WindExcitation, lift: float, lo: float, hi: float) -> Floats:
     """Pieces of F_L(Omega)/lift, one cubic between neighbouring knots; smooth between the kinks of the tables."""
     from scipy.interpolate import CubicHermiteSpline  # takes long to load
 
     if lift == 0:
         return np.zeros((0, 5))
-    edges = np.concatenate([[lo], [U for U in law.kinks(lo, hi) if lo < U * (1 - _SAME) < U * (1 + _SAME) < hi], [hi]])
+    low, high = min(lo, hi), max(lo, hi)
+    kinks = [U for U in law.kinks(low, high) if low < U * (1 - _SAME) < U * (1 + _SAME) < high]
+    edges = np.concatenate([[low], kinks, [high]])
     rows = []
-    for a, b in pairwise(edges):
+    for a, b in pairwise(edges if lo < hi else edges[::-1]):
         U = np.linspace(a, b, _KNOTS)
-        inner = np.clip(U, a + 1e-9 * (b - a), b - 1e-9 * (b - a))  # one-sided slopes at the kinks
+        inner = np.clip(U, *sorted((a + 1e-9 * (b - a), b - 1e-9 * (b - a))))  # one-sided slopes at the kinks
         W, slope = law.frequency(U), law.lift_slope(inner) / law.frequency_slope(inner)
         spline = CubicHermiteSpline(W, law.lift(U) / lift, slope / lift)
         rows.append(np.column_stack([W[:-1], spline.c[::-1].T]))

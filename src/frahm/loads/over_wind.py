@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _ITERATIONS = 100
+_ASIDE = 1e-4  # of a stretch, or of a wind: so near a turning point of Omega(U) it has no inverse to work with
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +82,43 @@ class WindExcitation:
         return speeds[(speeds > low) & (speeds < high)]
 
     def is_monotone(self, low: float, high: float) -> bool:
-        """Whether Omega(U) ascends strictly from `low` to `high` [m/s]: exact, between knots dSt/dlnRe is constant."""
-        edges = self._edges(low, high)
-        middle = self._slopes(edges)
+        """Whether Omega(U) ascends strictly on the way from `low` to `high` [m/s], upwards or downwards.
+
+        Exact: between knots dSt/dlnRe is constant.
+        """
+        edges = self._edges(min(low, high), max(low, high))
+        middle, sense = self._slopes(edges), 1.0 if low <= high else -1.0
         left, right = self._strouhal_at(edges[:-1]) + middle, self._strouhal_at(edges[1:]) + middle
-        return bool(np.all(left > 0) and np.all(right > 0))
+        return bool(np.all(sense * left > 0) and np.all(sense * right > 0))
+
+    def stretches(self, low: float, high: float) -> list[tuple[float, float]]:
+        """Every stretch of the winds [m/s] between two on which Omega(U) is monotone, as long as each can be.
+
+        From the wind that sheds slowest to the one that sheds fastest: a stretch on which the shedding frequency falls
+        with the wind goes downwards. Where it turns between the knots of a table a ten-thousandth is left out.
+        """
+        edges = self._edges(low, high)
+        turns = self._turning(edges)
+        ends = np.unique(np.concatenate([edges, turns]))
+        rising = self.frequency_slope(np.sqrt(ends[:-1] * ends[1:])) > 0
+        runs = np.split(np.arange(len(rising)), np.flatnonzero(np.diff(rising)) + 1)
+        found = []
+        for run in runs:
+            a, b = float(ends[run[0]]), float(ends[run[-1] + 1])
+            aside = _ASIDE * (b - a)
+            a, b = a + aside * (a in turns), b - aside * (b in turns)
+            found.append((a, b) if rising[run[0]] else (b, a))
+        return [one for one in found if self.is_monotone(*one)]
+
+    def goes_on(self, speed: float, upwards: bool, rising: bool) -> bool:
+        """Whether Omega(U) rises, or falls, on just beyond a wind [m/s] as it does up to it."""
+        beyond = float(self.frequency_slope(speed * (1 + _ASIDE if upwards else 1 - _ASIDE)))
+        return not (beyond < 0 if rising else beyond > 0)
 
     def speed(self, frequency: ArrayLike, low: float, high: float) -> Floats:
-        """Wind speed U [m/s] that sheds at Omega [rad/s], between `low` and `high` where Omega(U) ascends; else NaN.
+        """Wind speed U [m/s] that sheds at Omega [rad/s], from `low` to `high` where Omega(U) ascends; else NaN.
+
+        `low` is the higher of the two where the shedding frequency falls with the wind.
 
         Raises
         ------
@@ -101,12 +131,12 @@ class WindExcitation:
                 hint="The Strouhal number falls faster than 1/U in part of it.",
             )  # fmt: skip
         Omega = np.asarray(frequency, dtype=float)
-        edges = self._edges(low, high)
+        edges, sense = self._edges(min(low, high), max(low, high)), 1.0 if low <= high else -1.0
         ends = self._turns * edges * self._strouhal_at(edges)
-        piece = np.clip(np.searchsorted(ends, Omega, side="right") - 1, 0, edges.size - 2)
+        piece = np.clip(np.searchsorted(sense * ends, sense * Omega, side="right") - 1, 0, edges.size - 2)
         slope, first = self._slopes(edges)[piece], self._strouhal_at(edges)[piece]
-        found = _solve(Omega / self._turns, edges[piece], edges[piece + 1], first, slope)
-        inside = (Omega >= ends[0] * (1 - EDGE)) & (Omega <= ends[-1] * (1 + EDGE))
+        found = _solve(Omega / self._turns, edges[piece], edges[piece + 1], first, slope, sense)
+        inside = (Omega >= np.min(ends) * (1 - EDGE)) & (Omega <= np.max(ends) * (1 + EDGE))
         return np.where(inside, found, np.nan)
 
     def speeds_of(self, frequency: float) -> Floats:
@@ -119,11 +149,7 @@ class WindExcitation:
             high = 2 * max(last, frequency / self._turns / float(self.strouhal.values[-1]))
         low = max(low, 1e-9 * high)
         edges = self._edges(low, high)
-        # Omega = c U (St + b ln(U/U0)) turns where ln(U/U0) = -1 - St/b: between such points it ascends or descends.
-        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            turns = edges[:-1] * np.exp(-1 - self._strouhal_at(edges[:-1]) / self._slopes(edges))
-        turns = turns[(turns > edges[:-1]) & (turns < edges[1:])]
-        edges = np.unique(np.concatenate([edges, turns]))
+        edges = np.unique(np.concatenate([edges, self._turning(edges)]))
         excess = self.frequency(edges) - frequency
         found = [float(U) for U in edges[excess == 0]]
         for i in np.flatnonzero(excess[:-1] * excess[1:] < 0):
@@ -143,6 +169,15 @@ class WindExcitation:
         speeds = np.exp(self.strouhal.knots) * self.viscosity / self.diameter
         return np.unique(np.concatenate([[low, high], speeds[(speeds > low) & (speeds < high)]]))
 
+    def _turning(self, edges: Floats) -> Floats:
+        """Winds [m/s] between the knots at which Omega(U) turns.
+
+        Omega = c U (St + b ln(U/U0)) turns where ln(U/U0) = -1 - St/b.
+        """
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            turns = edges[:-1] * np.exp(-1 - self._strouhal_at(edges[:-1]) / self._slopes(edges))
+        return np.asarray(turns[(turns > edges[:-1]) & (turns < edges[1:])])
+
     def _strouhal_at(self, speeds: Floats) -> Floats:
         return self.strouhal.value(self.reynolds_number(speeds))
 
@@ -150,13 +185,16 @@ class WindExcitation:
         return self.strouhal.slope(self.reynolds_number(np.sqrt(edges[:-1] * edges[1:])))
 
 
-def _solve(target: Floats, low: Floats, high: Floats, first: Floats, slope: Floats) -> Floats:
-    """U with U (first + slope ln(U/low)) = target, by Newton's method held inside [low, high] by bisection."""
+def _solve(target: Floats, low: Floats, high: Floats, first: Floats, slope: Floats, sense: float) -> Floats:
+    """U with U (first + slope ln(U/low)) = target, by Newton's method held inside [low, high] by bisection.
+
+    The left side rises with U if `sense` is 1, and falls if it is -1.
+    """
     start = low
     U = np.clip(target / first, low, high)
     for _ in range(_ITERATIONS):
         excess = U * (first + slope * np.log(U / start)) - target
-        low, high = np.where(excess < 0, U, low), np.where(excess > 0, U, high)
+        low, high = np.where(sense * excess < 0, U, low), np.where(sense * excess > 0, U, high)
         better = U - excess / (first + slope * (1 + np.log(U / start)))
         new = np.where((better >= low) & (better <= high), better, 0.5 * (low + high))
         if np.all(np.abs(new - U) <= 4e-16 * U):

@@ -10,7 +10,6 @@ import numpy as np
 from frahm.case import Pipe
 from frahm.loads import (
     forced_amplitude,
-    left_out,
     lock_in_band,
     reynolds_number,
     site_winds,
@@ -95,8 +94,6 @@ def _site(inputs: Inputs) -> Iterator[Implausible]:
         elif not isinstance(case.pipe, Pipe) and last.size and window[1] > float(last[-1]):
             reason = f"Higher modes may be missing: {reaches}, above all {natural.size} modes ({_BAND})."
             yield inputs.implausible(path, reason)
-    for doubt in left_out(case):
-        yield inputs.implausible("wind.strouhal", doubt)
     if case.wind.range is not None and not case.wind.range[0] <= case.wind.speed <= case.wind.range[1]:
         reason = f"The site has winds of {case.wind.range[0]:g} to {case.wind.range[1]:g} m/s (wind.range)."
         yield inputs.implausible("wind.speed", reason)
