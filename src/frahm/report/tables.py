@@ -321,10 +321,11 @@ def _ranges_text(ranges: list[list[float]]) -> str:
 
 
 def other_mode_rows(analysis: Analysis) -> list[tuple[str, ...]]:
-    """Mode, natural frequency, peak, wind, stress range and standing of every other mode that the wind excites."""
+    """Mode, natural frequency, range, peak, wind, stress range and standing of what else the wind excites."""
     return [
         (
-            str(row["mode"]), readable.frequency(row["natural_frequency"]), readable.in_mm(row["pipe_peak"]),
+            str(row["mode"]), readable.frequency(row["natural_frequency"]), row["range"].split(",")[0],
+            readable.in_mm(row["pipe_peak"]),
             readable.speed(row["wind_speed"]), readable.motion(row["kind"]), readable.in_mpa(row["stress_range"]),
             "yes" if row["verified"] else "no: " + " ".join(row["unverified"]),
         )
