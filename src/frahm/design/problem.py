@@ -120,7 +120,7 @@ class Problem:
     @property
     def screened(self) -> int:
         """Designs judged by the closed form so far."""
-        return self._tried + sum(tier.count for tier in self.tiers.values())
+        return self._tried + sum(tier.ledger.count for tier in self.tiers.values())
 
     @property
     def most_mass_ratio(self) -> float:
@@ -171,7 +171,7 @@ class Problem:
                 return
             best = tier.best(self.limits, Corrections())
             known[place] = math.inf if best is None else best[1]
-            self._tried += tier.count
+            self._tried += tier.ledger.count
 
         for place in np.linspace(lo, hi, _PLACES):
             look(float(place))

@@ -81,6 +81,17 @@ class Limits:
 
 
 @dataclass(eq=False)
+class Ledger:
+    """What a search has come to: designs judged, and where in the cube it is not to look again (d,).
+
+    One for a search and all its parts, under whatever limits these are.
+    """
+
+    count: int = 0
+    avoided: list[Floats] = field(default_factory=list)
+
+
+@dataclass(eq=False)
 class TierOne:
     """Search over a space; the coarse grid is judged once and used again under other corrections and limits."""
 
@@ -88,8 +99,7 @@ class TierOne:
     space: DesignSpace
     objective: Objective
     limits: Limits
-    count: int = 0
-    avoided: list[Floats] = field(default_factory=list)
+    ledger: Ledger = field(default_factory=Ledger)
 
     def __post_init__(self) -> None:
         if self.space.size in _GRID:
@@ -106,7 +116,7 @@ class TierOne:
         """Stroke [m], growth [1/s], birth [-], ceiling [m], filling of the springs [-], pipe amplitudes over the force
         [m] in all R rows of every mode, climate means of all disturbances: (D, 5 + R + C).
         """  # noqa: D205
-        self.count += len(designs)
+        self.ledger.count += len(designs)
         screening = self.screening
         births, ceilings = screening.births(designs), fold_ceilings(screening, designs)
         peaks, others = screening.responses(designs)
@@ -179,11 +189,11 @@ class TierOne:
 
     def avoid(self, design: Floats) -> None:
         """Search no longer near a design (5,), because it was found worse than it looked."""
-        self.avoided.append(self.space.units(design[None])[0])
+        self.ledger.avoided.append(self.space.units(design[None])[0])
 
     def _allowed(self, units: Floats, values: Floats) -> Floats:
         """Values (D,) at points (D, d) of the unit cube; infinite near those avoided."""
-        for point in self.avoided:
+        for point in self.ledger.avoided:
             values = np.where(np.max(np.abs(units - point), axis=1) < _AVOIDED, np.inf, values)
         return values
 

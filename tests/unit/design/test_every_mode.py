@@ -9,9 +9,10 @@ import frahm
 from frahm.design import DesignSettings, verified_designs, with_design
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import conditions_of, exact_birth, exact_judgement
+from frahm.design.finalists import finalists
 from frahm.design.objective import Objective
 from frahm.design.problem import Problem
-from frahm.design.search import BIRTH
+from frahm.design.search import BIRTH, TierOne
 from frahm.design.settings import settings_for
 from frahm.design.verification import verification
 
@@ -77,3 +78,16 @@ def test_a_damper_is_sized_for_the_mode_that_moves_most():
     tuned = np.sqrt(best.design.linear / best.design.rho2) / (2 * np.pi)
     assert tuned == pytest.approx(5.2, rel=0.03)
     assert best.value == pytest.approx(frahm.worst_case(with_design(case, best.design), samples=8).pipe_peak, rel=1e-6)
+
+
+def test_every_design_judged_is_counted_whatever_the_limits_it_was_judged_under(monkeypatch):
+    judged, judge = [], TierOne.judge
+
+    def counted(self, designs):
+        judged.append(len(designs))
+        return judge(self, designs)
+
+    monkeypatch.setattr(TierOne, "judge", counted)
+    problem = problem_of()
+    finalists(problem.tier("sink"), problem.modes_of, problem.disturbances, problem.limits)
+    assert problem.screened == sum(judged) > 72 * 72
