@@ -62,6 +62,12 @@ def separate_kernel(function: Callable[..., Any]) -> Any:
     return compiled
 
 
+def is_to_be_kept(kernel: Any) -> bool:
+    """Whether a kernel is still to be compiled, and can be kept then."""
+    cache: KeptKernel = kernel._cache
+    return cache.folder is not None and not any(cache.folder.glob(f"{cache.name}.*.kernel"))
+
+
 class KeptKernel(NullCache):
     """The machine code of a function on disk, a file for every signature.
 
@@ -79,33 +85,36 @@ class KeptKernel(NullCache):
     ----------
     separate : bool
         Whether callers are not to take its code in.
+    folder : Path or None
+    name : str
+        What the names of its files begin with.
     """
 
     def __init__(self, function: Callable[..., Any], folder: Path | None):
-        self._folder = folder
+        self.folder = folder
         self.separate = False
         self._function = (function.__module__, function.__qualname__)
         code = function.__code__
         name = re.sub(r"[^\w.]", "", function.__qualname__)
-        self._name = f"{function.__module__.rpartition('.')[2]}.{name}-{code.co_firstlineno}"
+        self.name = f"{function.__module__.rpartition('.')[2]}.{name}-{code.co_firstlineno}"
         self._made_of = (numba.__version__, sys.version_info[:2], hashlib.sha256(code.co_code).hexdigest())
 
     @property
     def cache_path(self) -> str | None:
         """The folder, for numba's statistics."""
-        return None if self._folder is None else str(self._folder)
+        return None if self.folder is None else str(self.folder)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Compiled code of a signature; None, and a word in the log, if what is there cannot be used."""
         target_context.refresh()
-        if self._folder is None:
+        if self.folder is None:
             return None
         key = self._key(sig, target_context.codegen())
         try:
-            content = _own_content(self._path(self._folder, key))
+            content = _own_content(self._path(self.folder, key))
             if content is None:
                 return None
-            _mark_used(self._folder)
+            _mark_used(self.folder)
             calls, made = pickle.loads(_unsealed(key, content))
             if not _all_loaded(calls):
                 return None
@@ -126,15 +135,15 @@ class KeptKernel(NullCache):
             self._keep_apart(sig, data)
 
     def _save(self, sig: Any, data: Any) -> None:
-        if self._folder is None or data.library.has_dynamic_globals:  # addresses of this process stand in it
+        if self.folder is None or data.library.has_dynamic_globals:  # addresses of this process stand in it
             return
         key = self._key(sig, data.codegen)
         try:
-            self._folder.mkdir(parents=True, exist_ok=True)
+            self.folder.mkdir(parents=True, exist_ok=True)
             content = dumps((_separate_calls(data.library), data._reduce()))
-            write_bytes(self._path(self._folder, key), _sealed(key, content))
-            _mark_used(self._folder)
-            _remove_unused(self._folder.parent)
+            write_bytes(self._path(self.folder, key), _sealed(key, content))
+            _mark_used(self.folder)
+            _remove_unused(self.folder.parent)
         except (OSError, ParameterError, RuntimeError) as error:  # the last: code whose making was interrupted
             _say(f"Compiled kernels cannot be kept in {_cache_root()}: {getattr(error, 'hint', None) or error}")
 
@@ -145,10 +154,10 @@ class KeptKernel(NullCache):
             _SEPARATE[made.fndesc.mangled_name] = (*self._function, sig)
 
     def _key(self, sig: Any, codegen: Any) -> bytes:
-        return repr((self._name, sig, codegen.magic_tuple(), self._made_of)).encode()
+        return repr((self.name, sig, codegen.magic_tuple(), self._made_of)).encode()
 
     def _path(self, folder: Path, key: bytes) -> Path:
-        return folder / f"{self._name}.{hashlib.sha256(key).hexdigest()[:24]}.kernel"
+        return folder / f"{self.name}.{hashlib.sha256(key).hexdigest()[:24]}.kernel"
 
 
 _SEPARATE: dict[str, tuple[str, str, Any]] = {}  # by symbol: module, name and signature of a kernel that is there

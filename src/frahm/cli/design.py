@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from frahm.cli.ahead import compiled_ahead
 from frahm.cli.cases import CaseArgument
 from frahm.cli.guarded import ExitCode, held_interrupts
 from frahm.cli.notes import say_notes
@@ -74,7 +75,7 @@ def design(
     }  # fmt: skip
     asked = {name: value for name, value in given.items() if value is not None}
     say_notes(loaded)
-    with shown_progress() as progress:
+    with shown_progress() as progress, compiled_ahead():
         progress("loading", 0, 1)
         with held_interrupts():
             import xarray  # noqa: F401 - imported here, where nothing can stop it half-way

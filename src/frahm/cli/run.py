@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from frahm.cli.ahead import compiled_ahead
 from frahm.cli.cases import CaseArgument
 from frahm.cli.folder import holds_design
 from frahm.cli.guarded import ExitCode, held_interrupts
@@ -33,7 +34,7 @@ def run(
     folder = default_folder(loaded) if out is None else out
     claim_folder(folder, loaded, force=force)
     say_notes(loaded)
-    with shown_progress() as progress:
+    with shown_progress() as progress, compiled_ahead():
         progress("loading", 0, 1)
         with held_interrupts():
             import xarray  # noqa: F401 - the steps need it: imported here, where nothing can stop it half-way
