@@ -77,3 +77,16 @@ def test_a_motion_on_an_orbit_is_settled_though_one_of_its_balls_is_tiny():
     settled = Settling(strobe, 3000, [orbit]).settle(beside)
     assert np.all(settled.labels == 0)
     assert np.all(settled.periods < 1000)
+
+
+def test_what_is_in_a_ball_settles_though_another_orbit_passes_through_large_ones():
+    """Two orbits of 23 periods nearly alike: a shell around a state of one may shrink onto both."""
+    one = drawn(149)
+    strobe = stroboscope(one.system, one.frequency)
+    near = (-0.00278, 0.06579, -0.00553, -0.05286, -0.01148, 0.14016, -0.00936, 0.15628)
+    orbit = orbit_at(strobe, refined(strobe, strobe.run(np.array([near]), 2300).states[0], 23)[0], 23)
+    steps = np.random.default_rng(0).standard_normal((16, len(near)))
+    steps /= np.linalg.norm(steps, axis=1, keepdims=True)
+    for ball in orbit.balls:
+        states = ball.centre + ball.radius * steps @ np.linalg.inv(ball.root).T
+        assert np.all(ball.distance(strobe.run(states, 23 * 40).states) < 0.1)
