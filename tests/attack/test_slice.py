@@ -1,5 +1,6 @@
 """A slice of the standing attack (`make attack`): attractors and verified worsts against an independent integrator."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -22,7 +23,7 @@ from worst_attacked import Promise, attack_random, challenge
 FOLDED = drawn(17)  # two periodic motions, of about half the states each
 
 
-@pytest.mark.parametrize("number", [14, 8, 16, 17, 18, 12, 20])
+@pytest.mark.parametrize("number", [14, 8, 16, 17, 18, 12, 20, 120])
 def test_every_attractor_of_a_random_system_is_found(number):
     said = attack(drawn(number), others=96, rare=False)
     assert not [group for group in said["missed"] if group["called"] == "nothing"]
@@ -72,7 +73,8 @@ def test_a_motion_on_an_orbit_is_settled_though_one_of_its_balls_is_tiny():
     near = np.array([*near, 0.28814247143709726, 0.24314875298975006, 0.24507059112580137])
     orbit = orbit_at(strobe, refined(strobe, near, 4)[0], 4)
     assert orbit.multiple == 4
-    assert orbit.balls[0].radius < 1e-3 * max(ball.radius for ball in orbit.balls)
+    tiny = dataclasses.replace(orbit.balls[0], radius=1e-6 * orbit.balls[0].radius)
+    orbit = dataclasses.replace(orbit, balls=(tiny, *orbit.balls[1:]))
     beside = near * (1 + 1e-2 * np.random.default_rng(0).uniform(-1, 1, (12, 1)))
     settled = Settling(strobe, 3000, [orbit]).settle(beside)
     assert np.all(settled.labels == 0)
