@@ -158,7 +158,9 @@ def _later(known, oracle, frequency, periods, motions, labels):
         if stretch:
             now = ends(oracle, now.states, frequency, periods)
         apart.append([known[index].apart(now) for index in orbits])
-    falls = np.all(np.diff(apart, axis=0) < -_FALLS * np.array(apart[:-1]), axis=0) & np.isfinite(apart[-1])
+    with np.errstate(invalid="ignore"):
+        nearer = np.diff(apart, axis=0) < -_FALLS * np.array(apart[:-1])
+    falls = np.all(nearer, axis=0) & np.isfinite(apart[-1])
     nearest = np.argmin(np.where(falls, apart[-1], np.inf), axis=0)
     found[slow] = np.where(falls.any(axis=0), np.array(orbits)[nearest], -1)
     return found
