@@ -6,7 +6,20 @@ import numpy as np
 from scipy.stats import fisher_exact
 
 import frahm
-from brute_force import ALIKE, NEARLY, WINDOW, ends, exponent, looks_apart, random_states, scattered, size_of
+from brute_force import (
+    ALIKE,
+    MOST,
+    NEARLY,
+    WINDOW,
+    ends,
+    exponent,
+    looks_apart,
+    looks_of,
+    random_states,
+    repeating,
+    scattered,
+    size_of,
+)
 from extremes_attacked import expected_peaks_attacked
 from frahm.attractors.regions import sample_region
 from oracle import Oracle
@@ -15,10 +28,12 @@ MISSED = 0.02  # basins that must be found
 OTHERS = 400  # random states besides those of the sample
 _CHAOTIC = 2e-3  # growth per period that the documentation calls chaos
 _CONFIRM = 200  # periods after which a periodic attractor is still itself
-_LOOKS = 16  # windows over which a modulated or chaotic attractor is seen
+_MEMBERS, _LOOKS, _AFTER = 32, 16, 8  # of what is no orbit: motions, windows of each, windows that tell who has left
+_HOLDS = 0.25  # of the members, at least, that stay on it for a window
+_AGAIN = 8  # further windows of a motion that is on nothing known; most must show the same attractor
+_STAYING = 40  # stretches over which the growth on a set that motions leave is counted
 _MOVED = 1e-7  # of a state: what moves the end of a motion from near a boundary
 _STRETCHES, _FALLS = 2, 0.02  # of motions that are slow: stretches more, least fall of the distance in each
-_MOST = 16  # multiples of the period below which what repeats is no locked beat
 
 
 def attack(drawn, others=OTHERS, rare=True):
@@ -34,6 +49,7 @@ def attack(drawn, others=OTHERS, rare=True):
     other = ends(oracle, random_states(system, found.region, others, random), W, found.periods)
     labels, labels_other = labelled(known, oracle, W, found.periods, states), label(known, other)
     labels_other = _later(known, oracle, W, found.periods, other, labels_other)
+    labels_other = _again(known, oracle, W, other, labels_other)
     rows = [_row(item, index, found, labels, labels_other, rare) for index, item in enumerate(known)]
     shifted = _shift([row["paired"] for row in rows], [row["fraction"] for row in rows])
     nudged = 0.0
@@ -60,13 +76,16 @@ class Known:
             self.size = size_of(self.strobes[None], frequency)[0]
             self.holds = bool(np.max(np.abs(late - self.strobes[-1]) / self.size) < 1e-3)
         else:
-            beside = scattered(state, frequency, 8, 1e-4)
-            seen = oracle.watch(beside, frequency, WINDOW * (_LOOKS + 1), WINDOW * _LOOKS)
-            peaks = seen.peaks.reshape(8 * _LOOKS, WINDOW, 2)
-            largest, mean = peaks.max(axis=1), peaks.mean(axis=1)
-            looks = np.stack([largest[:, 0], mean[:, 0], largest[:, 1], mean[:, 1]], axis=1)
-            self.least, self.most, self.members = looks.min(axis=0), looks.max(axis=0), seen.states
-            self.holds = True
+            beside = scattered(state, frequency, _MEMBERS, 1e-4)
+            windows = _LOOKS + _AFTER
+            seen = oracle.watch(beside, frequency, WINDOW * (windows + 1), WINDOW * windows)
+            strobes = seen.strobes.reshape(_MEMBERS, windows, WINDOW, -1)
+            looks = looks_of(seen.peaks.reshape(_MEMBERS * windows, WINDOW, 2)).reshape(_MEMBERS, windows, 4)
+            stayed = _stayed(strobes, frequency)
+            counted = looks[np.arange(windows) < np.minimum(stayed, _LOOKS)[:, None]]
+            self.least, self.most = counted.min(axis=0, initial=np.inf), counted.max(axis=0, initial=-np.inf)
+            self.members = strobes[stayed > 0, 0, -1] if attractor.leaks else strobes[:8, _LOOKS - 1, -1]
+            self.holds = np.mean(stayed > 0) >= _HOLDS
 
     @property
     def periodic(self):
@@ -81,17 +100,32 @@ class Known:
             repeats = (motions.nearly > 0) & (p % np.maximum(motions.nearly, 1) == 0)
             return np.where(repeats, nearest, np.inf)
         within = np.clip(motions.looks, self.least, self.most)
-        regular = (motions.multiple > 0) & (motions.multiple <= _MOST)
+        regular = (motions.multiple > 0) & (motions.multiple <= MOST)
         return np.where(regular, np.inf, looks_apart(motions.looks, within) / ALIKE)
 
     def kind_of_brute(self):
         """Kind that the oracle sees: by the recurrence of the orbit, or by the growth between neighbours."""
+        if not self.holds:
+            return "unstable"
         if self.periodic:
-            return "periodic" if self.holds else "unstable"
-        rate, error = exponent(self.oracle, self.members, self.frequency)
+            return "periodic"
+        leaks = self.attractor.leaks
+        rate, error = exponent(self.oracle, self.members, self.frequency, *([_STAYING] if leaks else []))
         if rate - 2.4 * error > _CHAOTIC:
             return "chaotic"
         return "quasi-periodic" if rate + 2.4 * error < _CHAOTIC else self.attractor.kind
+
+
+def _stayed(strobes, frequency):
+    """How many windows motions with strobes (N, W, K, 2n) stay before they turn to an orbit, W where they do not.
+
+    From the size of the motion to 3 % of it a decay takes no longer than from there to 1e-4.
+    """
+    count, windows = strobes.shape[:2]
+    each = repeating(strobes.reshape(count * windows, *strobes.shape[2:]), frequency)
+    there, near = (((m > 0) & (m <= MOST)).reshape(count, windows) for m in each)
+    at, begun = (windows - np.sum(np.cumprod(now[:, ::-1], axis=1), axis=1) for now in (there, near | there))
+    return np.where(at < windows, np.maximum(2 * begun - at - 1, 0), windows)
 
 
 def label(known, motions):
@@ -106,7 +140,8 @@ def label(known, motions):
 def labelled(known, oracle, frequency, periods, states):
     """Index of the attractor that motions from states end on, -1 for none."""
     motions = ends(oracle, states, frequency, periods)
-    return _later(known, oracle, frequency, periods, motions, label(known, motions))
+    labels = _later(known, oracle, frequency, periods, motions, label(known, motions))
+    return _again(known, oracle, frequency, motions, labels)
 
 
 def _later(known, oracle, frequency, periods, motions, labels):
@@ -123,9 +158,29 @@ def _later(known, oracle, frequency, periods, motions, labels):
         if stretch:
             now = ends(oracle, now.states, frequency, periods)
         apart.append([known[index].apart(now) for index in orbits])
-    falls = np.all(np.diff(apart, axis=0) < -_FALLS * np.array(apart[:-1]), axis=0) & np.isfinite(apart[-1])
+    with np.errstate(invalid="ignore"):
+        nearer = np.diff(apart, axis=0) < -_FALLS * np.array(apart[:-1])
+    falls = np.all(nearer, axis=0) & np.isfinite(apart[-1])
     nearest = np.argmin(np.where(falls, apart[-1], np.inf), axis=0)
     found[slow] = np.where(falls.any(axis=0), np.array(orbits)[nearest], -1)
+    return found
+
+
+def _again(known, oracle, frequency, motions, labels):
+    """Labels, those included that show one attractor in most of the windows that follow.
+
+    A window may pass the extremes of all those seen of a chaotic attractor, or hold the turn to an orbit.
+    """
+    found, odd = labels.copy(), np.flatnonzero((labels < 0) & ~motions.lost)
+    if not odd.size:
+        return labels
+    now, shown = motions[odd], []
+    for _ in range(_AGAIN):
+        now = ends(oracle, now.states, frequency, WINDOW)
+        shown.append(label(known, now))
+    votes = np.array([np.count_nonzero(np.array(shown) == index, axis=0) for index in range(len(known))])
+    if known:
+        found[odd] = np.where(votes.max(axis=0) > _AGAIN / 2, np.argmax(votes, axis=0), -1)
     return found
 
 

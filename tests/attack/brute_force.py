@@ -10,10 +10,11 @@ from frahm.attractors.regions import states_of
 
 WINDOW = 256  # periods a motion is looked at in the end
 HIGHEST = 64  # multiples of the period at which it may repeat
+MOST = 16  # multiples of the period up to which what repeats is no locked beat
 _REPEATS = 1e-4  # distance of strobes, in sizes of the motion: what repeats is periodic
 NEARLY = 0.03  # the same of a motion that still approaches an orbit
 ALIKE = 0.02  # of peaks that are one
-_STRETCH, _ALIGNED, _COUNTED, _APART = 10, 20, 200, 1e-7  # of the Lyapunov exponent: periods, stretches, distance
+_STRETCH, _ALIGNED, _APART = 10, 20, 1e-7  # of the Lyapunov exponent: periods, stretches, distance
 
 
 @dataclass(frozen=True)
@@ -43,16 +44,23 @@ def ends(oracle, states, frequency, periods, factor=1.0):
     """How motions from the states (N, 2n) end."""
     seen = oracle.watch(states, frequency, periods, WINDOW, factor)
     lost = ~np.isfinite(seen.states).all(axis=1)
-    distance = np.full((len(states), HIGHEST), np.inf)
-    sizes = size_of(seen.strobes, frequency)
-    last = seen.strobes[:, -HIGHEST:]
+    return Ends(seen.strobes[:, -1], *repeating(seen.strobes, frequency), looks_of(seen.peaks), lost)
+
+
+def repeating(strobes, frequency):
+    """Periods after which each of the motions with strobes (N, K, 2n) repeats, and nearly repeats; 0 for none."""
+    sizes, last = size_of(strobes, frequency), strobes[:, -HIGHEST:]
+    distance = np.empty((len(strobes), HIGHEST))
     for multiple in range(1, HIGHEST + 1):
-        before = seen.strobes[:, -HIGHEST - multiple : -multiple]
+        before = strobes[:, -HIGHEST - multiple : -multiple]
         distance[:, multiple - 1] = np.max(np.abs(last - before) / sizes[:, None], axis=(1, 2))
-    distance[lost] = np.inf
-    largest, mean = seen.peaks.max(axis=1), seen.peaks.mean(axis=1)
-    looks = np.stack([largest[:, 0], mean[:, 0], largest[:, 1], mean[:, 1]], axis=1)
-    return Ends(seen.strobes[:, -1], _first(distance < _REPEATS), _first(distance < NEARLY), looks, lost)
+    return _first(distance < _REPEATS), _first(distance < NEARLY)
+
+
+def looks_of(peaks):
+    """Largest and mean peak of a period (N, 4) of pipe and first element, of peaks (N, K, 2)."""
+    largest, mean = peaks.max(axis=1), peaks.mean(axis=1)
+    return np.stack([largest[:, 0], mean[:, 0], largest[:, 1], mean[:, 1]], axis=1)
 
 
 def size_of(strobes, frequency):
@@ -73,13 +81,16 @@ def looks_apart(looks, others):
     return np.max(np.abs(looks - others) / np.maximum(peaks, 1e-300), axis=-1)
 
 
-def exponent(oracle, states, frequency):
-    """Largest Lyapunov exponent per period of the forcing from neighbours of eight states, and its standard error."""
+def exponent(oracle, states, frequency, counted=200):
+    """Largest Lyapunov exponent per period of the forcing from neighbours of the states, and its standard error.
+
+    It is that of `counted` stretches of ten periods, of the motions that have not come to an orbit by then.
+    """
     size = size_of(states[:, None], frequency)
     random = np.random.default_rng(1).standard_normal(states.shape)
     apart = random / np.linalg.norm(random, axis=1, keepdims=True)
     growth = []
-    for stretch in range(_ALIGNED + _COUNTED):
+    for stretch in range(_ALIGNED + counted):
         seen = oracle.watch(np.concatenate([states, states + _APART * apart * size]), frequency, _STRETCH, 0)
         states, beside = np.split(seen.states, 2)
         apart = (beside - states) / size
@@ -87,7 +98,9 @@ def exponent(oracle, states, frequency):
         apart /= distance
         if stretch >= _ALIGNED:
             growth.append(np.log(distance[:, 0] / _APART) / _STRETCH)
-    each = np.mean(growth, axis=0)
+    last = oracle.watch(states, frequency, 2 * HIGHEST, 2 * HIGHEST).strobes
+    multiple = repeating(last, frequency)[0]
+    each = np.mean(growth, axis=0)[(multiple == 0) | (multiple > MOST)]
     return float(np.mean(each)), float(np.std(each, ddof=1) / np.sqrt(len(each)))
 
 

@@ -25,6 +25,7 @@ STRETCH = 50  # periods over each of which the peak is kept
 _STARTED = 2 * MEMBERS
 _STATIONARY, BELONGS, INSIDE = 0.8, 0.5, 0.9  # shares of strobes that must lie where others have been
 _LEAST_REACH = 0.25  # in standard deviations of the strobes: clouds nearer to each other than this count as one
+_REACHED = 0.99  # share of a motion's strobes that those of others on the attractor come near to
 _QUERIES = 100  # strobes of a motion that are looked at
 _LEAST_BLOCKS, _MOST_ROUNDS = 64, 32  # of WATCH periods of each member, and rounds of them: for peaks that are rare
 _STRETCHES, _STRETCH, _HIGHEST = 48, 251, 17  # of a drift: stretches, their periods (a prime), strobes at their ends
@@ -94,7 +95,7 @@ def drift(strobe: Stroboscope, state: Floats) -> Floats | None:
 
 
 def _covers(here: Floats, there: Floats) -> bool:
-    tree, scale, reach = _tree(here, 2.0, 0.95)
+    tree, scale, reach = _tree(here)
     return bool(_share(tree, scale, reach, there[None])[0] >= _STATIONARY)
 
 
@@ -105,7 +106,7 @@ def confirmed(strobe: Stroboscope, strobes: Floats, orbits: Sequence[Orbit]) -> 
     alive = stayed.codes == 0
     stretches, watched, states, good = _watched(strobe, np.where(alive[:, None], stayed.states, starts))
     good &= alive
-    tree, scale, reach = _tree(strobes, 2.0, 0.95)
+    tree, scale, reach = _tree(strobes)
     for orbit in orbits:
         good &= ~orbit.contains(states)
     left = int(np.count_nonzero(~good))
@@ -114,10 +115,9 @@ def confirmed(strobe: Stroboscope, strobes: Floats, orbits: Sequence[Orbit]) -> 
     if len(on) < MEMBERS:
         return None
     members = frozen(watched[on])
-    points = np.concatenate([strobes, members.reshape(-1, strobes.shape[1])])
-    tree, scale, reach = _tree(points, 3.0, 0.99)
+    tree, scale, _ = _tree(np.concatenate([strobes, members.reshape(-1, strobes.shape[1])]))
     return Cloud(
-        frozen(scale), tree, reach, members, frozen(stretches[on]),
+        frozen(scale), tree, _reach(strobes / scale, members / scale), members, frozen(stretches[on]),
         lyapunov(strobe, members[:, -1]), _STARTED * (STAY + WATCH), left,
     )  # fmt: skip
 
@@ -157,13 +157,23 @@ def _watched(strobe: Stroboscope, states: Floats) -> tuple[Floats, Floats, Float
     return np.stack(stretches, axis=1), np.concatenate(strobes, axis=1), states, good
 
 
-def _tree(points: Floats, factor: float, quantile: float) -> tuple[cKDTree, Floats, float]:
+def _tree(points: Floats) -> tuple[cKDTree, Floats, float]:
     """Tree of the points (K, 2n), the scale they are divided by, and how far they may be from each other."""
     scale = np.std(points, axis=0)
     scale = np.maximum(scale, 1e-9 * np.max(np.abs(points), initial=1e-300, axis=0))
     tree = cKDTree(points / scale)
     nearest = tree.query(tree.data, k=2)[0][:, 1]
-    return tree, scale, max(factor * float(np.quantile(nearest, quantile)), _LEAST_REACH)
+    return tree, scale, max(2.0 * float(np.quantile(nearest, 0.95)), _LEAST_REACH)
+
+
+def _reach(strobes: Floats, members: Floats) -> float:
+    """Distance within which nearly all strobes of each member (m, K, 2n) lie from those of the others and `strobes`.
+
+    No more: a smaller attractor may lie in what a chaotic motion leaves empty.
+    """
+    others = (np.concatenate([strobes, *np.delete(members, k, axis=0)]) for k in range(len(members)))
+    apart = [cKDTree(points).query(member)[0] for points, member in zip(others, members, strict=True)]
+    return max(float(np.quantile(apart, _REACHED)), _LEAST_REACH)
 
 
 def _share(tree: cKDTree, scale: Floats, reach: float, strobes: Floats) -> Floats:

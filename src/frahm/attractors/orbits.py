@@ -273,25 +273,35 @@ def _ball(strobe: Stroboscope, centre: Floats, Phi: Floats, size: Floats, multip
         return least
     to_states = np.linalg.inv(root) * size[:, None]
     root = root / size
-    count = int(np.clip(4 * _DIRECTIONS // multiple, _DIRECTIONS // 4, _DIRECTIONS))
-    directions = _directions(len(size))[:count] @ to_states.T
+    directions = _directions(len(size)) @ to_states.T
+    few = int(np.clip(4 * _DIRECTIONS // multiple, _DIRECTIONS // 4, _DIRECTIONS))
+    turned = np.linalg.matrix_power(Phi, turns)
+    spare = limit - np.linalg.norm(root @ turned @ to_states, 2)
 
-    def shrinks(radius: float) -> bool:
-        ended = strobe.run(centre + radius * directions, turns * multiple)
-        left = np.linalg.norm((ended.states - centre) @ root.T, axis=1)
-        return bool(np.all(ended.codes == 0) and np.all(left <= limit * radius))
+    def shell(radius: float, count: int = few) -> tuple[bool, bool]:
+        """Whether all states of a shell come nearer, and so nearly as linear theory says that smaller ones do too."""
+        states = radius * directions[:count]
+        ended = strobe.run(centre + states, turns * multiple)
+        moved = ended.states - centre
+        shrinks = np.all(ended.codes == 0) and np.all(np.linalg.norm(moved @ root.T, axis=1) <= limit * radius)
+        off = np.max(np.linalg.norm((moved - states @ turned.T) @ root.T, axis=1))
+        return bool(shrinks), bool(shrinks and off <= spare * radius)
 
+    shrinks, sure = shell(_FIRST)
+    largest = _FIRST if shrinks else 0.0
+    while 0 < largest < _LARGEST and shell(_RATIO * largest)[0]:
+        largest *= _RATIO
+    # another attractor inside draws states of a large shell inwards too: the smaller ones tell
     radius = _FIRST
-    if shrinks(radius):
-        while radius < _LARGEST and shrinks(_RATIO * radius):
-            radius *= _RATIO
-        verified = True
-    else:
+    while not sure and radius > _SMALLEST:
         radius /= _RATIO
-        while radius > _SMALLEST and not shrinks(radius):
-            radius /= _RATIO
-        verified = radius > _SMALLEST and shrinks(radius / _RATIO)
-    return Ball(frozen(centre), frozen(root), radius / _RATIO, verified) if verified else least
+        shrinks, sure = shell(radius)
+        largest = max(largest, radius) if shrinks else 0.0
+    while few < _DIRECTIONS and largest > _RATIO * _SMALLEST and not shell(largest, _DIRECTIONS)[0]:
+        largest /= _RATIO
+    if largest <= _RATIO * _SMALLEST:
+        return least
+    return Ball(frozen(centre), frozen(root), largest / _RATIO, verified=True)
 
 
 def _adapted_root(Phi: Floats, rho: float) -> Floats:
