@@ -46,11 +46,8 @@ def worst(work: Work) -> Section:
     parts: list[WorstCase] = []
     motions: list[WorstMotion] = []
     try:
-        for number, (case, within) in enumerate(((work.case, work.range), *others_of(work))):
-            part = worst_over(
-                build_system(case), within, samples=settings.samples, min_basin=0.0, seed=settings.seed,
-                sampled=number == 0,
-            )  # fmt: skip
+        for case, within in ((work.case, work.range), *others_of(work)):
+            part = worst_over(build_system(case), within, samples=settings.samples, min_basin=0.0, seed=settings.seed)
             parts.append(part)
             motions.append(with_stress(case, part))
     except ParameterError as refused:

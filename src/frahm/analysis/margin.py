@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 
 from frahm import readable
+from frahm.analysis.linear import others_of
 from frahm.analysis.section import Section, Work
 from frahm.harmonic_balance import LOOKED_AHEAD, begin, births_ahead, is_linear
+from frahm.loads import OperatingRange
 from frahm.response import DetachedCurveEvent, ResponseCurve, detached_curve_events
 from frahm.response.exact import exact_curve
-from frahm.systems import with_parameters
+from frahm.systems import System, build_system, with_parameters
 
 UPWARD, DOWNWARD = (1.0, 1.6, 3.0), (1.0, 0.5, 0.2)  # factors on the force: the search ends with the first find
 _LADDER = (1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 2.5, 3.0)  # factors asked in turn where the lift follows the wind
@@ -42,7 +44,7 @@ def detached_curve_margin(work: Work) -> Section:
     doubts: list[str] = []
     above, highest = _searched(work, UPWARD, end, doubts)
     nearest = min((event.value for event in above), default=highest)
-    birth = None if exists else _next_birth(work, nearest)
+    birth = None if exists else _next_birth(work.system, work.range, nearest)
     below, lowest = _searched(work, DOWNWARD, end, doubts) if exists else ([], 1.0)
     ahead = min(above, key=lambda event: event.value, default=None)
     born = max((e for e in below if e.direction > 0), key=lambda event: event.value, default=None)
@@ -63,22 +65,31 @@ def detached_curve_margin(work: Work) -> Section:
 
 
 def _over_the_winds(work: Work, curve: dict[str, Any], exists: bool) -> Section:
-    """The same where the lift follows the wind: the curve itself is asked at more and more force, and then bisected."""
+    """The same where the lift follows the wind, in every mode that winds excite.
+
+    The curves themselves are asked at more and more force, and then bisected.
+    """
+    ranges = [(work.system, work.range), *((build_system(case), within) for case, within in others_of(work))]
+    exists = exists or any(_detached_count(*one, 1.0) for one in ranges[1:])
     free, taken, event = 1.0, math.nan, None
     if not exists:
         for force in _LADDER:
-            if _detached_count(work, force):
-                taken = force
+            found_in = [one for one in ranges if _detached_count(*one, force)]
+            if found_in:
+                taken, ranges_there = force, found_in
                 break
             free = force
         while math.isfinite(taken) and taken - free > _BIRTH * taken:
             middle = 0.5 * (free + taken)
-            free, taken = (free, middle) if _detached_count(work, middle) else (middle, taken)
-        event = _next_birth(work, taken if math.isfinite(taken) else free)
+            there = [one for one in ranges if _detached_count(*one, middle)]
+            free, taken, ranges_there = (free, middle, there) if there else (middle, taken, ranges_there)
+        most = taken if math.isfinite(taken) else free
+        births = [event for one in ranges if (event := _next_birth(*one, most)) is not None]
+        event = min(births, key=lambda one: one["force"], default=None)
         if event is not None:
             free = taken = event["force"]
         elif math.isfinite(taken):
-            event = _born(work, taken)
+            event = _born(*ranges_there[0], taken)
     found: dict[str, Any] = {
         "exists": exists,
         "next_event": event,
@@ -89,21 +100,21 @@ def _over_the_winds(work: Work, curve: dict[str, Any], exists: bool) -> Section:
     return Section(results={"response": {"harmonic-balance": curve | {"detached_curve_margin": found}}})
 
 
-def _next_birth(work: Work, most: float) -> dict[str, Any] | None:
+def _next_birth(system: System, within: OperatingRange, most: float) -> dict[str, Any] | None:
     """The nearest birth at more force, below `most` times it: also of a curve that merges again soon after."""
     force = 1.0
     while force < most:
-        search = begin(with_parameters(work.system, force=force), *work.range.frequency, None, work.range.factor)
+        search = begin(with_parameters(system, force=force), *within.frequency, None, within.factor)
         births = [force * factor for factor, _ in births_ahead(search)]
         if births and births[0] < most:
-            return _born(work, births[0])
+            return _born(system, within, births[0])
         force *= LOOKED_AHEAD
     return None
 
 
-def _born(work: Work, force: float) -> dict[str, Any] | None:
+def _born(system: System, within: OperatingRange, force: float) -> dict[str, Any] | None:
     """Where the detached curve is that a factor on the force has made appear; None if there is none beyond it."""
-    curve = _curve(work, (1 + _JUST) * force)
+    curve = _curve(system, within, (1 + _JUST) * force)
     new = next((branch for branch in curve.branches if branch.detached and not branch.asymmetric), None)
     if new is None:
         return None
@@ -114,15 +125,14 @@ def _born(work: Work, force: float) -> dict[str, Any] | None:
         "force": force,
         "frequency": float(new.frequency[at]),
         "detuning": float(new.detuning[at]),
-        "wind_speed": float(work.range.speed(new.frequency[at])),
+        "wind_speed": float(within.speed(new.frequency[at])),
         "pipe_peak": float(new.pipe_peak[at]),
         "relative_peak": float(new.relative_peak[at]),
     }
 
 
-def _curve(work: Work, force: float) -> ResponseCurve:
-    driven = with_parameters(work.system, force=force)
-    return exact_curve(driven, *work.range.frequency, None, work.range.factor)
+def _curve(system: System, within: OperatingRange, force: float) -> ResponseCurve:
+    return exact_curve(with_parameters(system, force=force), *within.frequency, None, within.factor)
 
 
 def _searched(
@@ -161,12 +171,15 @@ def _change(work: Work, event: DetachedCurveEvent) -> str:
     """
     if event.kind == "birth":
         return "appears" if event.direction > 0 else "vanishes"
-    before, after = (_detached_count(work, event.value * factor) for factor in (1 - _BESIDE, 1 + _BESIDE))
+    before, after = (
+        _detached_count(work.system, work.range, event.value * factor) for factor in (1 - _BESIDE, 1 + _BESIDE)
+    )
     return "parts" if after > before else "joins"
 
 
-def _detached_count(work: Work, force: float) -> int:
-    return sum(branch.detached and not branch.asymmetric for branch in _curve(work, force).branches)
+def _detached_count(system: System, within: OperatingRange, force: float) -> int:
+    curve = _curve(system, within, force)
+    return sum(branch.detached and not branch.asymmetric for branch in curve.branches)
 
 
 FORCE_MARGIN = "The force margin is the largest factor on the force up to which no detached response curve was met."

@@ -1,9 +1,9 @@
-"""Lasting motions that are known without a sample: the one of a linear system, and stable periodic responses."""
+"""The lasting motion that is known without a sample: the one of a linear system."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from frahm.arrays import Floats, frozen
 from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.attractors.extremes import DURATION
 from frahm.errors import Outcome
-from frahm.harmonic_balance import PeriodicResponse, linear_growth, linear_response
+from frahm.harmonic_balance import linear_growth, linear_response
 from frahm.loads import OperatingRange
 from frahm.response import ResponseCurve
 from frahm.systems import System, detuning_of
@@ -66,28 +66,6 @@ def _alone(system: System, W: float, within: OperatingRange, first: Floats, grow
     sizes = (pipe, stroke, pipe / math.sqrt(2), stroke / math.sqrt(2))
     alone = _periodic(system, W, sizes, state, growth, 1.0, (1.0, 1.0))
     return AttractorSet((alone,), W, alone.detuning, {}, 0, 0, 0, Outcome.DONE)
-
-
-def stable_motions(system: System, responses: Sequence[PeriodicResponse], W: float) -> AttractorSet | None:
-    """The stable periodic responses at a frequency as attractors of unknown basins; None if there is none."""
-    first = system.elements[0].direction if system.elements else np.zeros(system.size)
-    found = []
-    for response in responses:
-        if response.stable:
-            rms = (_rms(response, row) for row in (system.output, first))
-            growth = math.log(max(abs(response.multipliers[0]), 1e-300)) / response.period
-            sizes = (response.pipe_peak, response.relative_peak, *rms)
-            found.append(_periodic(system, W, sizes, response.state, growth, math.nan, (0.0, 1.0)))
-    if not found:
-        return None
-    found.sort(key=lambda attractor: -attractor.pipe_peak)
-    return AttractorSet(tuple(found), W, found[0].detuning, {}, 0, 0, 0, Outcome.DONE)
-
-
-def _rms(response: PeriodicResponse, row: Floats) -> float:
-    """Root mean square of a combination of coordinates over a period [m]."""
-    parts = [abs(complex(X @ row)) ** 2 * (1.0 if k == 0 else 0.5) for k, X in response.harmonics.items()]
-    return math.sqrt(sum(parts))
 
 
 def _periodic(

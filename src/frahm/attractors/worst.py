@@ -12,7 +12,7 @@ import numpy as np
 from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.attractors.doubts import Place, doubts_of, frequencies_beyond
 from frahm.attractors.finding import MOST_SAMPLES, attractors_from, settling_periods
-from frahm.attractors.periodic_motion import linear_motions, stable_motions
+from frahm.attractors.periodic_motion import linear_motions
 from frahm.attractors.regions import Region, checked_region, region_for
 from frahm.attractors.stroboscope import stroboscope
 from frahm.attractors.worst_motion import WorstMotion, joined
@@ -37,7 +37,6 @@ _FINE = 3.3e-4  # how near its neighbours the worst is looked at in the end
 _ROUNDS = 12
 
 UNMOVED_TIER = "nothing excites the pipe: the lift is zero"
-PERIODIC_TIER = "all stable periodic responses, and a search where there is none"
 
 Size = Callable[[Attractor], float]
 
@@ -200,7 +199,7 @@ def worst_case(
     first = worst_over(system, within, **settings)
     if isinstance(case_or_system, System) or not within.moves:
         return first
-    settings |= {"region": None, "sampled": False}
+    settings |= {"region": None}
     beside = other_ranges(load_case(case_or_system))
     others = [worst_over(build_system(case), part, **settings) for case, part in beside]
     return worst_of((first, *others))
@@ -229,12 +228,9 @@ def _range(case_or_system: Any, system: System, detuning: Any, frequency: Any, w
 def worst_over(
     system: System, within: OperatingRange, *, samples: int, min_basin: float, seed: int,
     region: Region | None = None, periods: int | None = None, workers: int | None = None, rms: bool = False,
-    beside: float = BESIDE, sampled: bool = True,
+    beside: float = BESIDE,
 ) -> WorstCase:  # fmt: skip
-    """`worst_case` of a system over a range; special points are looked at from `beside` of the frequency away.
-
-    If not `sampled`, the stable periodic responses count, and states are sampled only where there is none.
-    """
+    """`worst_case` of a system over a range; special points are looked at from `beside` of the frequency away."""
     wide = within.widened()
     curve, responses_at = _curve(system, wide)
     at = driven_at(system, wide)
@@ -247,9 +243,6 @@ def worst_over(
 
     def survey(W: float) -> AttractorSet:
         responses = responses_at(W)
-        known = None if sampled else stable_motions(system, responses, W)
-        if known is not None:
-            return known
         followed = settling_periods(system, W) if periods is None else periods
         return attractors_from(stroboscope(at(W), W, workers), responses, box, samples, seed, followed)
 
@@ -270,8 +263,7 @@ def worst_over(
         doubts.append(Outcome.INTERRUPTED.value)
     if any(_gaps(surveys, W) for W in {_largest(surveys, size, min_basin)[0] for size in sizes}):
         doubts.append("The frequency of the worst was not bracketed to 0.03 %.")
-    tier = "attractor search" if sampled else PERIODIC_TIER
-    return _concluded(system, within, wide, curve, surveys, min_basin, tuple(doubts), beyond, tier)
+    return _concluded(system, within, wide, curve, surveys, min_basin, tuple(doubts), beyond, "attractor search")
 
 
 def driven_at(system: System, within: OperatingRange) -> Callable[[float], System]:

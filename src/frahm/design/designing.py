@@ -391,15 +391,19 @@ class _Designing:
                 self.found.best = whole
 
     def _acceptance(self, best: Rival) -> dict[str, Any]:
-        rows = utilisations(self.case, {**best.worst.row(), "relative_peak": best.relative_peak}, best.fatigue)
-        return accepted(rows, best.verified)
+        """The best device held against the limits, over everything that scatters."""
+        worst = joined([best.worst, best.scattered])
+        found = accepted(utilisations(self._rival_case(best), worst.row(), best.fatigue), best.verified)
+        if self.settings.scatter.names and found["rows"]:
+            found["sentence"] += " The worst over the scatter asked for is what was judged."
+        return found
 
     def _decision(self, rivals: Sequence[Rival]) -> dict[str, Any]:
         """Every device in one table, as `frahm run` has it."""
         rows = []
         for rival in rivals:
-            worst = {**rival.worst.row(), "relative_peak": rival.relative_peak}
-            rows.append(device_row(rival.name, self._rival_case(rival), worst, rival.fatigue, rival.unverified))
+            case = self._rival_case(rival)
+            rows.append(device_row(rival.name, case, rival.worst.row(), rival.fatigue, rival.unverified))
         over = "wind" if self.problem.within.over_wind else "detuning"
         return {"over": over, "range": self.problem.within.text, "rows": rows, "remarks": {}}
 

@@ -100,8 +100,7 @@ def verification(
 ) -> Verification:
     """Worst case over all attractors under every disturbance; where these are a grid, with more beside the worst one.
 
-    The first of the modes is searched for all attractors; the others for their stable periodic responses, and for
-    attractors only where there is none. With `quick` special points are looked at from farther away, where motions
+    With `quick` special points are looked at from farther away, where motions
     settle sooner.
 
     Raises
@@ -116,7 +115,7 @@ def verification(
         worst = worst_over(
             changed, mode.windows.range(one, changed.reference_frequency), samples=samples, seed=seed,
             min_basin=min_basin, periods=periods, rms=objective.name == "rms",
-            beside=_FARTHER if quick else BESIDE, sampled=mode is modes[0],
+            beside=_FARTHER if quick else BESIDE,
         )  # fmt: skip
         if Outcome.INTERRUPTED.value in worst.unverified:
             raise KeyboardInterrupt

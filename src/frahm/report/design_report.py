@@ -229,7 +229,7 @@ def _slope(value: float) -> str:
 
 
 def _stroke(rival: Rival) -> str:
-    return "-" if rival.name == "none" else readable.in_mm(rival.relative_peak)
+    return "-" if rival.name == "none" else readable.in_mm(rival.worst.relative_peak)
 
 
 def _margin(value: float, searched: float) -> str:

@@ -174,9 +174,9 @@ def test_over_the_winds_the_margin_is_bisected_to_the_birth(monkeypatch, birth):
     case = frahm.load_case(CASE.to_dict() | {"analysis": {}})
     curve = {"special_points": [], "branches": []}
     work = Work(case, Section(results={"response": {"harmonic-balance": curve}}, data={"response": None}))
-    monkeypatch.setattr(margin_module, "_detached_count", lambda _, force: int(force >= birth))
-    monkeypatch.setattr(margin_module, "_born", lambda _, force: {"force": force})
-    monkeypatch.setattr(margin_module, "_next_birth", lambda _, most: None)
+    monkeypatch.setattr(margin_module, "_detached_count", lambda system, within, force: int(force >= birth))
+    monkeypatch.setattr(margin_module, "_born", lambda system, within, force: {"force": force})
+    monkeypatch.setattr(margin_module, "_next_birth", lambda system, within, most: None)
     found = detached_curve_margin(work).results["response"]["harmonic-balance"]["detached_curve_margin"]
     assert found["force_margin"] < birth <= found["next_event"]["force"]
     assert found["force_margin"] == pytest.approx(found["next_event"]["force"], rel=1e-3)
