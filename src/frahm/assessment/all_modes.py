@@ -22,7 +22,7 @@ def damage_of_modes(case: Case) -> tuple[FatigueDamage, ...]:
     first = fatigue_damage(case)
     named = case.fatigue is not None and case.fatigue.wind_speeds is not None
     others = () if named or not operating_range(case).moves else other_ranges(case)
-    return (first, *(fatigue_damage(other, wind=part.winds) for other, part in others))
+    return (first, *(fatigue_damage(other, wind=part.winds) for other, part in others if part.over_wind))
 
 
 def total_damage(parts: tuple[FatigueDamage, ...]) -> dict[str, Any]:

@@ -27,11 +27,11 @@ def worst_motion(case: Case, problem: Problem, nominal: tuple[WorstCase, ...]) -
     """
     settings = problem.settings
     if not nominal:
-        ranges = (problem.within, *(windows.range(Disturbance()) for _, windows in problem.others))
+        ranges = (problem.within, *(windows.range(Disturbance()) for *_, windows in problem.others))
         asked: dict[str, Any] = {"samples": settings.samples, "seed": settings.seed, "min_basin": 0.0}
         modes = zip(problem.modes(case), ranges, strict=True)
         nominal = tuple(worst_over(mode.system, within, **asked) for mode, within in modes)
-    cases = [case, *(governed(case, mode) for mode, _ in problem.others)]
+    cases = [case, *(governed(case, mode, speed) for mode, speed, _ in problem.others)]
     motions = [with_stress(one, part) for one, part in zip(cases, nominal, strict=True)]
     return joined(motions), lasting_motions(nominal)
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frahm.design.disturbance import Disturbance
-from frahm.loads import OperatingRange, frequency_range
+from frahm.loads import OperatingRange, frequency_range, locking_wind
 from frahm.response import ResponseCurve
 from frahm.response.exact import exact_curve
 from frahm.systems import System
@@ -53,6 +53,9 @@ class Windows:
 
     def includes(self, disturbance: Disturbance) -> bool:
         """Whether any wind of the site excites the pipe under a disturbance."""
+        if self.nominal is not None and self.nominal.law is not None and math.isfinite(self.nominal.held):
+            omega = disturbance.pipe_frequency * self.nominal.reference
+            return locking_wind(self.nominal.law, omega, self.nominal.site) is not None
         (lo, hi), _ = self.at(disturbance)
         return lo < hi
 

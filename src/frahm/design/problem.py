@@ -41,8 +41,8 @@ class Problem:
     objective : Objective
     windows : Windows
         Of the governing mode.
-    others : tuple of (int, Windows)
-        Number of the governing mode, and where, of what else winds of the site excite, see `other_ranges`.
+    others : tuple of (int, float, Windows)
+        Governing mode, wind of the case [m/s] and where, of what else winds of the site excite, see `other_ranges`.
     within : OperatingRange
         What the worst motion of every device is asked about.
     wide : tuple of float
@@ -57,7 +57,7 @@ class Problem:
     settings: DesignSettings
     objective: Objective
     windows: Windows
-    others: tuple[tuple[int, Windows], ...]
+    others: tuple[tuple[int, float, Windows], ...]
     within: OperatingRange
     wide: tuple[float, float]
     disturbances: list[Disturbance]
@@ -86,7 +86,9 @@ class Problem:
         else:
             windows = Windows(wide if moving else within.frequency, wide, moving, nominal=within)
         beside = other_ranges(case, _most_mass_ratio(settings)) if within.moves else ()
-        others = tuple((other.pipe.governing_mode, _over_wind(part, settings)) for other, part in beside)
+        others = tuple(
+            (other.pipe.governing_mode, other.wind.speed, _over_wind(part, settings)) for other, part in beside
+        )
         conditions = disturbances(
             settings.scatter, settings.quantile, settings.scatter_samples, settings.seed,
             lock_in=not within.over_wind,
@@ -103,7 +105,7 @@ class Problem:
 
     def modes(self, case: Case) -> list[ExcitedMode]:
         """A pipe with a device as winds excite each of its modes, the governing one first."""
-        others = [ExcitedMode(build_system(governed(case, k)), windows) for k, windows in self.others]
+        others = [ExcitedMode(build_system(governed(case, k, speed)), windows) for k, speed, windows in self.others]
         return [ExcitedMode(build_system(case), self.windows), *others]
 
     def modes_of(self, design: DesignedAbsorber) -> list[ExcitedMode]:
@@ -183,12 +185,12 @@ class Problem:
                     look(0.5 * (places[at] + places[other]))
         return min(sorted(known), key=lambda place: known[place])
 
-    def _host(self, place: float | None, mode: int | None = None) -> Host:
+    def _host(self, place: float | None, mode: int | None = None, speed: float | None = None) -> Host:
         """The pipe as an absorber feels it, where a mode governs; by default that of the case."""
         ratio = self.settings.mass_ratio
         mass = ratio[0] if isinstance(ratio, tuple) else ratio
         case = with_design(self.case, DesignedAbsorber(mass or 1.0, 0.0, 1.0, 0.0, position=place))
-        return host_of(build_system(case if mode is None else governed(case, mode)))
+        return host_of(build_system(case if mode is None else governed(case, mode, speed)))
 
     def _tier(self, family: str, margin: float, place: float | None, sized_for: int | None = None) -> TierOne:
         host = self._host(place)
@@ -198,7 +200,9 @@ class Problem:
         screening = dataclasses.replace(
             self._screening(host, self.windows, forces),
             climate=self._climate(host, place) if self.objective.over_climate else None,
-            others=tuple(self._screening(self._host(place, mode), windows, forces) for mode, windows in others),
+            others=tuple(
+                self._screening(self._host(place, mode, speed), windows, forces) for mode, speed, windows in others
+            ),
         )
         settings = self.settings if family == self.settings.family else self.settings.for_rival()
         sizing = host if sized_for is None else self._host(place, sized_for)
@@ -277,9 +281,10 @@ def _over_wind(within: OperatingRange, settings: DesignSettings) -> Windows:
     return Windows(within.asked, within.asked, within.moves, axis, within)
 
 
-def governed(case: Case, mode: int) -> Case:
-    """The case where the lift is in step with a mode."""
-    return case if mode == case.pipe.governing_mode else case.with_pipe(governing_mode=mode)
+def governed(case: Case, mode: int, speed: float | None = None) -> Case:
+    """The case where the lift is in step with a mode, and counts from a wind [m/s] if that is another one."""
+    other = case if mode == case.pipe.governing_mode else case.with_pipe(governing_mode=mode)
+    return other if speed is None or speed == case.wind.speed else other.with_wind(speed=speed)
 
 
 def _most_mass_ratio(settings: DesignSettings) -> float:

@@ -108,7 +108,7 @@ def verification(
     KeyboardInterrupt
         If the search was interrupted.
     """
-    found: dict[Disturbance, tuple[WorstCase, ...]] = {}
+    found: dict[Disturbance, dict[int, WorstCase]] = {}
 
     def worst_of_mode(mode: ExcitedMode, one: Disturbance) -> WorstCase:
         changed = one.at_force(force).of(mode.system)
@@ -122,7 +122,9 @@ def verification(
         return worst
 
     def look(one: Disturbance) -> None:
-        found[one] = tuple(worst_of_mode(mode, one) for mode in modes if mode is modes[0] or mode.windows.includes(one))
+        found[one] = {
+            at: worst_of_mode(mode, one) for at, mode in enumerate(modes) if at == 0 or mode.windows.includes(one)
+        }
 
     for one in disturbances:
         look(one)
@@ -143,7 +145,7 @@ def is_grid(disturbances: Sequence[Disturbance]) -> bool:
     return plain and list(disturbances) == sorted(disturbances)
 
 
-def _beside_worst(found: dict[Disturbance, tuple[WorstCase, ...]], objective: Objective) -> list[Disturbance]:
+def _beside_worst(found: dict[Disturbance, dict[int, WorstCase]], objective: Objective) -> list[Disturbance]:
     """Middles of the gaps beside the worst frequency of the pipe."""
     grid = sorted(found)
     at = max(range(len(grid)), key=lambda i: _value(found[grid[i]], objective))
@@ -156,21 +158,22 @@ def _beside_worst(found: dict[Disturbance, tuple[WorstCase, ...]], objective: Ob
     ]
 
 
-def _value(worst: Sequence[WorstCase], objective: Objective) -> float:
+def _value(worst: dict[int, WorstCase], objective: Objective) -> float:
     """Of the objective, for a pipe in every mode."""
-    return max(mode.pipe_rms if objective.name == "rms" else mode.pipe_peak for mode in worst)
+    return max(mode.pipe_rms if objective.name == "rms" else mode.pipe_peak for mode in worst.values())
 
 
-def _joined(found: dict[Disturbance, tuple[WorstCase, ...]], objective: Objective) -> Verification:
+def _joined(found: dict[Disturbance, dict[int, WorstCase]], objective: Objective) -> Verification:
     grid = sorted(found)
-    at = max(grid, key=lambda one: max(mode.pipe_peak for mode in found[one]))
-    motions = [replace(mode.motion, unverified=_named(one, mode.unverified)) for one in grid for mode in found[one]]
-    nominal = next((found[one] for one in grid if replace(one, lock_in=True) == Disturbance()), ())
+    at = max(grid, key=lambda one: max(mode.pipe_peak for mode in found[one].values()))
+    parts = [(one, mode) for one in grid for mode in found[one].values()]
+    motions = [replace(mode.motion, unverified=_named(one, mode.unverified)) for one, mode in parts]
+    nominal = next((tuple(found[one].values()) for one in grid if replace(one, lock_in=True) == Disturbance()), ())
     return Verification(
         value=float(objective.over_scatter(np.array([_value(found[one], objective) for one in grid]))),
         motion=joined(motions),
         disturbance=at,
-        mode=max(range(len(found[at])), key=lambda mode: found[at][mode].pipe_peak),
+        mode=max(found[at], key=lambda mode: found[at][mode].pipe_peak),
         nominal=nominal,
     )
 

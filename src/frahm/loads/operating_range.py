@@ -58,6 +58,8 @@ class OperatingRange:
         Whether the range was made from the natural frequencies, so that it moves with them.
     doubts : tuple of str
         Sentences that say why nothing found over the range is verified; empty if it is what the site asks for.
+    held : float
+        Wind [m/s] that is locked in to the mode over the range, with its own lift; NaN where there is none.
     band : (float, float) or None
         Frequencies [rad/s] that are asked about where the site has the winds for them; None: those of the range.
     """
@@ -72,6 +74,7 @@ class OperatingRange:
     moves: bool = False
     doubts: tuple[str, ...] = ()
     band: tuple[float, float] | None = None
+    held: float = math.nan
 
     @property
     def asked(self) -> tuple[float, float]:
@@ -118,7 +121,7 @@ class OperatingRange:
         """Wind speed [m/s] that sheds at Omega [rad/s], inside the range; NaN where the lift is fixed."""
         W = np.asarray(frequency, dtype=float)
         if self.wind is None or self.law is None:
-            return np.full(W.shape, np.nan)
+            return np.full(W.shape, self.held)
         return self.law.speed(np.clip(W, *self.frequency), *self.wind)
 
     def part(self, lo: float, hi: float) -> OperatingRange:
@@ -138,7 +141,7 @@ class OperatingRange:
         """
         ends = self.asked[0] * low, self.asked[1] * high
         if self.wind is None or self.law is None:
-            return replace(self, frequency=ends)
+            return replace(self, frequency=ends, band=self.asked)
         first, last = self._reach
         whole = float(self.law.frequency(first)), float(self.law.frequency(last))
         lo = first if whole[0] >= ends[0] else float(self.law.speed(ends[0], first, last))
@@ -206,6 +209,8 @@ class OperatingRange:
         """The range in words."""
         if self.wind is not None:
             return f"winds of {min(self.wind):.4g} ... {max(self.wind):.4g} m/s, each with its own lift"
+        if not math.isnan(self.held):
+            return f"lock-in of {self.held:.4g} m/s, the wind of the site nearest to the resonance"
         if math.isnan(self.reference):
             return (
                 f"excitation frequencies of {self.frequency[0]:.5g} ... {self.frequency[1]:.5g} rad/s, one lift for all"
@@ -385,10 +390,45 @@ def other_ranges(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, 
     if winds[0] < winds[1] * (1 - _SAME) and not law.is_monotone(*winds):
         stretches = [one for one in law.stretches(*winds) if not _overlap(one, main.wind)]
         found += [(case, part) for part in _ranges_of(case, law, bands[0], stretches, main.site)]
+    found += _locked_in(case, law, bands[0], site)
     for other, band, winds in _beside(case, most_mass_ratio):
         stretches = [winds] if law.is_monotone(*winds) else law.stretches(*winds)
         found += [(other, part) for part in _ranges_of(other, law, band, stretches, site)]
+        found += _locked_in(other, law, band, site)
     return tuple(found)
+
+
+def _locked_in(
+    case: Case, law: WindExcitation, band: tuple[float, float], site: tuple[float, float]
+) -> Iterator[tuple[Case, OperatingRange]]:
+    """The lock-in of the wind of a site nearest to the resonance of the governing mode, where the site lacks that one.
+
+    Vortices that lock in are shed at the frequency of the mode: its resonance is met, with the lift of this wind.
+    """
+    omega = case.pipe.frequency
+    speed = locking_wind(law, omega, site)
+    if speed is None:
+        return
+    locked = case.with_wind(speed=speed)
+    basis = f"{speed:.4g} m/s, the wind of the site nearest to the resonance, may lock in to the mode."
+    shed = float(law.frequency(speed))
+    yield locked, OperatingRange(
+        (min(band[0], shed), max(band[1], shed)), omega, law=law, lift=vortex_shedding(locked).lift, site=site,
+        basis=(basis,), moves=True, band=band, held=speed,
+    )  # fmt: skip
+
+
+def locking_wind(law: WindExcitation, omega: float, site: tuple[float, float]) -> float | None:
+    """The wind of a site [m/s] that is nearest to the resonance of a mode [rad/s] and may lock in to it.
+
+    None if the site has the resonant wind itself, or none within the band of lock-in.
+    """
+    resonant = law.speeds_of(omega)
+    if not resonant.size or np.any((site[0] <= resonant) & (resonant <= site[1])):
+        return None
+    pairs = [(U, float(R)) for U in site for R in resonant if U > 0 and math.isfinite(U)]
+    speed, resonance = min(pairs, key=lambda pair: abs(pair[0] - pair[1]))
+    return speed if LOCK_IN_RATIOS[0] <= speed / resonance <= LOCK_IN_RATIOS[1] else None
 
 
 def _overlap(one: tuple[float, float], other: tuple[float, float] | None) -> bool:

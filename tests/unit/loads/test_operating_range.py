@@ -135,6 +135,22 @@ def test_where_the_shedding_frequency_falls_with_the_wind_every_stretch_is_looke
         operating_range(case({"strouhal": table}), wind=(9, 12))
 
 
+@pytest.mark.parametrize(("site", "nearest"), [((5.0, 9.5), 9.5), ((10.5, 22.0), 10.5)])
+def test_a_wind_that_may_lock_in_meets_the_resonance_the_site_lacks(site, nearest):
+    asked = case({"speed": nearest, "range": list(site)})
+    ((locked, within),) = other_ranges(asked)
+    assert within.held == locked.wind.speed == nearest
+    worst = frahm.worst_case(asked, samples=2)
+    assert worst.verified
+    pipe = asked.pipe
+    lift = float(wind_excitation(asked).lift(nearest))
+    resonance = lift / (2 * pipe.damping_ratio * pipe.frequency**2 * pipe.mass)
+    assert worst.pipe_peak == pytest.approx(resonance, rel=1e-4)
+    assert worst.wind_speed == nearest
+    assert other_ranges(case({"speed": 8.0, "range": [5.0, 8.2]})) == ()  # below the band of lock-in
+    assert other_ranges(case({"speed": 9.0, "range": [5.0, 10.1]})) == ()  # the site has the resonance itself
+
+
 def test_a_worst_motion_on_the_stretch_where_the_shedding_falls_is_found():
     """The site ends where the shedding has fallen: of its winds the strongest that excites sheds on the way down."""
     scale = DIAMETER / 1.5e-5
@@ -191,7 +207,7 @@ def test_another_mode_where_the_shedding_falls_with_the_wind_is_looked_at_on_eve
     folded = mast.with_wind(strouhal=[[1e2, 0.2], [Re[0], 0.2], [Re[1], 0.2 * ratio], [1e7, 0.2 * ratio]])
     if stretches == 2:  # the site has none of the winds beyond
         folded = folded.with_wind(range=(0.96 * middle, 1.28 * middle))
-    beside = [part for other, part in other_ranges(folded) if other.pipe.governing_mode == 2]
+    beside = [part for other, part in other_ranges(folded) if other.pipe.governing_mode == 2 and part.over_wind]
     assert len(beside) == stretches
     assert any(part.wind[0] > part.wind[1] for part in beside)
     for within in beside:
