@@ -51,8 +51,9 @@ class ClimateMeanOf:
 
 
 def climate_mean(
-    case: Case, measure: str, *, samples: int, seed: int, bins: int | None = None, changed: Change | None = None
-) -> ClimateMeanOf:
+    case: Case, measure: str, *, samples: int, seed: int, bins: int | None = None, changed: Change | None = None,
+    band: tuple[float, float] | None = None,
+) -> ClimateMeanOf:  # fmt: skip
     """Mean over the wind climate of a case, every attractor at every wind considered.
 
     Parameters
@@ -69,13 +70,15 @@ def climate_mean(
         Wind bins; by default those of the section `fatigue`, or 40.
     changed : callable, optional
         What is done to the system at every wind.
+    band : (float, float), optional
+        Winds [m/s] in place of those that count for the case.
 
     Raises
     ------
     ParameterError
         If a section is missing.
     """
-    climate, band = wind_climate(case), counted_band(case)
+    climate, band = wind_climate(case), counted_band(case, band)
     detail = None
     if measure == "damage":
         fatigue_section(case)

@@ -255,6 +255,7 @@ def _locked_in(pipe: LinearPipe | None, detail: Detail, climate: WindClimate, ed
     speeds = np.concatenate([np.linspace(edges[0], edges[-1], 4001)]
                             + [speed + width * np.linspace(-1, 1, 201) for speed, width in
                                pipe.resonances(edges[0], edges[-1])])  # fmt: skip
+    speeds = speeds[(speeds >= edges[0]) & (speeds <= edges[-1])]  # a well damped resonance is wider than the band
     return climate.duration * chance * float(np.max(pipe.rate(speeds, detail)))
 
 

@@ -23,7 +23,7 @@ from frahm.design.exact import ExcitedMode, conditions_of, exact_birth
 from frahm.design.finalists import FAR, Finalist, finalists
 from frahm.design.hardware import Hardware, as_built, hardware
 from frahm.design.objective import Objective
-from frahm.design.problem import Problem
+from frahm.design.problem import Problem, governed
 from frahm.design.robustness import Sensitivity, ToleranceBand, sensitivities, tolerance_band
 from frahm.design.search import Limits
 from frahm.design.settings import DesignSettings, settings_for
@@ -344,8 +344,9 @@ class _Designing:
         """Value of the objective for a case, over all attractors."""
         if self.objective.over_climate:
             return climate_verification(
-                case, self.problem.disturbances, self.objective, samples=self._climate_samples, seed=self.settings.seed
-            )
+                case, self.problem.disturbances, self.objective, samples=self._climate_samples,
+                seed=self.settings.seed, counted=[(governed(case, k), winds) for k, winds in self.problem.counted()],
+            )  # fmt: skip
         return self._worst(self.problem.modes(case))
 
     @property

@@ -85,7 +85,8 @@ class Problem:
             windows = _over_wind(within, settings)
         else:
             windows = Windows(wide if moving else within.frequency, wide, moving, nominal=within)
-        beside = other_ranges(case, _most_mass_ratio(settings)) if within.moves else ()
+        asked = within if not objective.over_climate else _range(case, settings, Objective())
+        beside = other_ranges(case, _most_mass_ratio(settings)) if asked.moves else ()
         others = tuple(
             (other.pipe.governing_mode, other.wind.speed, _over_wind(part, settings)) for other, part in beside
         )
@@ -96,7 +97,6 @@ class Problem:
         stops = case.absorbers[0].stops if case.absorbers else None
         stroke = min(settings.most_stroke, math.inf if stops is None else stops.gap)
         limits = Limits(settings.force_margin, stroke, False, settings.spring_length, settings.spring_stress)
-        asked = within if not objective.over_climate else _range(case, settings, Objective())
         return cls(case, settings, objective, windows, others, asked, wide, conditions, limits)
 
     def check_host(self) -> None:
@@ -196,20 +196,26 @@ class Problem:
         host = self._host(place)
         host.check_moves()
         forces = sorted({1.0, margin}) if family != "tuned" else [1.0]
-        others = () if self.objective.over_climate else self.others
-        screening = dataclasses.replace(
-            self._screening(host, self.windows, forces),
-            climate=self._climate(host, place) if self.objective.over_climate else None,
-            others=tuple(
-                self._screening(self._host(place, mode, speed), windows, forces) for mode, speed, windows in others
-            ),
+        others = tuple(
+            self._screening(self._host(place, mode, speed), windows, forces, mode)
+            for mode, speed, windows in self.others
         )
+        governing = self._screening(host, self.windows, forces, self.case.pipe.governing_mode)
+        screening = dataclasses.replace(governing, others=others)
         settings = self.settings if family == self.settings.family else self.settings.for_rival()
         sizing = host if sized_for is None else self._host(place, sized_for)
         space = design_space(sizing, self.case.pipe.mass, family, settings)
         return TierOne(screening, dataclasses.replace(space, position=place), self.objective, self.limits)
 
-    def _screening(self, host: Host, windows: Windows, forces: list[float]) -> Screening:
+    def counted(self) -> list[tuple[int, tuple[float, float]]]:
+        """Modes besides the governing one whose damage counts, and the winds of each [m/s]."""
+        fatigue = self.case.fatigue
+        if self.objective.name != "damage" or (fatigue is not None and fatigue.wind_speeds is not None):
+            return []
+        ranges = ((mode, windows.range(Disturbance()).winds) for mode, _, windows in self.others)
+        return [(mode, winds) for mode, winds in ranges if winds is not None]
+
+    def _screening(self, host: Host, windows: Windows, forces: list[float], mode: int) -> Screening:
         """One mode under all disturbances: where the response counts, and where detached curves are looked for."""
         lift: Lift | None = None if windows.axis is None else _lift(windows.axis)
         wide = windows.wide if lift is None else windows.window
@@ -217,13 +223,14 @@ class Problem:
             self.disturbances, windows.window, _RESPONSE_POINTS, moving=windows.moving, forces=forces, lift=lift
         )
         moving = lift is None or windows.moving
-        return Screening(
-            host, counts, host.conditions(self.disturbances, wide, _BIRTH_POINTS, moving=moving, lift=lift)
-        )
+        births = host.conditions(self.disturbances, wide, _BIRTH_POINTS, moving=moving, lift=lift)
+        governing = self.objective.over_climate and windows is self.windows
+        counted = governing or (mode, windows.range(Disturbance()).winds) in self.counted()
+        return Screening(host, counts, births, self._climate(host, windows, mode) if counted else None)
 
-    def _climate(self, host: Host, place: float | None) -> ClimateMean:
+    def _climate(self, host: Host, windows: Windows, mode: int) -> ClimateMean:
         """Mean over the winds of the band, equally spaced in frequency and closer around the resonance."""
-        axis, climate = self.windows.axis, wind_climate(self.case)
+        axis, climate = windows.axis, wind_climate(self.case)
         if axis is None:
             raise RuntimeError("a mean over the climate needs the wind as its axis")
         lift = _lift(axis)
@@ -236,7 +243,7 @@ class Problem:
             conditions = host.conditions_at(self.disturbances, rows, lift=lift)
             total = float(np.sum(chances))
             return ClimateMean(conditions, chances / total if total > 0 else chances, lambda x, W: x)
-        detail = detail_of(self.case if self.case.absorbers else self.case.without_absorbers())
+        detail = detail_of(governed(self.case, mode))
         stressed = dataclasses.replace(host, output=np.asarray(detail.row[: host.output.size]))
         conditions = stressed.conditions_at(self.disturbances, rows, lift=lift)
 

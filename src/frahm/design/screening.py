@@ -107,10 +107,11 @@ class Screening:
         return np.hstack([part for part, _ in parts]), np.max([largest for _, largest in parts], axis=0)
 
     def climate_means(self, designs: Floats) -> Floats:
-        """Means over the wind climate, (D, disturbances)."""
+        """Means over the wind climate, (D, disturbances): the sums over the modes that have one."""
         mean = self.climate
         if mean is None:
             return np.empty((len(designs), 0))
+        others = [mode.climate_means(designs) for mode in self.others if mode.climate is not None]
         found = np.empty((len(designs), len(mean.conditions.disturbances)))
 
         def run(part: slice) -> None:
@@ -119,7 +120,7 @@ class Screening:
             found[part] = mean.means(tables)
 
         self._in_threads(run, len(designs))
-        return found
+        return np.asarray(np.sum([found, *others], axis=0))
 
     def _in_threads(self, run: Callable[[slice], None], count: int) -> None:
         parts = [slice(at, min(at + _BATCH, count)) for at in range(0, count, _BATCH)]

@@ -184,10 +184,24 @@ def _named(one: Disturbance, doubts: Sequence[str]) -> tuple[str, ...]:
 
 
 def climate_verification(
-    case: Case, disturbances: Sequence[Disturbance], objective: Objective, *, samples: int, seed: int
-) -> Verification:
-    """Mean over the wind climate of a case under every disturbance, over all attractors at every wind."""
-    found = [climate_mean(case, objective.name, samples=samples, seed=seed, changed=one.of) for one in disturbances]
+    case: Case, disturbances: Sequence[Disturbance], objective: Objective, *, samples: int, seed: int,
+    counted: Sequence[tuple[Case, tuple[float, float]]] = (),
+) -> Verification:  # fmt: skip
+    """Mean over the wind climate of a case under every disturbance, over all attractors at every wind.
+
+    The damage of other modes, cases that they govern with the winds [m/s] of each, counts besides.
+    """
+    parts = [(case, None), *counted]
+    found = []
+    for one in disturbances:
+        means = [climate_mean(part, objective.name, samples=samples, seed=seed, changed=one.of, band=band)
+                 for part, band in parts]  # fmt: skip
+        largest = max(means, key=lambda mean: mean.pipe_peak)
+        found.append(replace(
+            largest, value=sum(mean.value for mean in means), pipe_rms=max(mean.pipe_rms for mean in means),
+            relative_peak=max(mean.relative_peak for mean in means),
+            unverified=tuple(dict.fromkeys(doubt for mean in means for doubt in mean.unverified)),
+        ))  # fmt: skip
     at = max(range(len(found)), key=lambda i: found[i].pipe_peak)
     doubts = [doubt for one, mean in zip(disturbances, found, strict=True) for doubt in _named(one, mean.unverified)]
     linear = is_linear(build_system(case))
@@ -195,7 +209,8 @@ def climate_verification(
     within = operating_range(case, wind=counted_band(case))
     motion = WorstMotion(
         pipe_peak=worst.pipe_peak, frequency=worst.frequency, detuning=worst.frequency - reference,
-        wind_speed=float(within.speed(worst.frequency)), kind=worst.kind, basin_fraction=math.nan,
+        wind_speed=math.nan if counted else float(within.speed(worst.frequency)), kind=worst.kind,
+        basin_fraction=math.nan,
         basin_interval=(math.nan, math.nan), relative_peak=max(mean.relative_peak for mean in found),
         relative_frequency=math.nan, pipe_rms=max(mean.pipe_rms for mean in found), rms_frequency=math.nan,
         state=np.empty(0), range=within.text, samples=0 if linear else samples, searched=len(found),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import frahm
+from frahm.assessment import damage_of_modes
 from frahm.design import DesignSettings, verified_designs, with_design
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import conditions_of, exact_birth, exact_judgement
@@ -91,3 +92,16 @@ def test_every_design_judged_is_counted_whatever_the_limits_it_was_judged_under(
     problem = problem_of()
     finalists(problem.tier("sink"), problem.modes_of, problem.disturbances, problem.limits)
     assert problem.screened == sum(judged) > 72 * 72
+
+
+def test_the_damage_that_is_made_small_is_that_of_all_modes():
+    sections = {
+        "climate": {"duration": "20 year", "weibull": {"scale": 6.0, "shape": 1.9}},
+        "fatigue": {"curve": "E", "stress_per_displacement": "900 MPa/m", "samples": 4, "bins": 12},
+    }
+    case = frahm.load_case(TABLE.to_dict() | sections)
+    (best,) = verified_designs(case, DesignSettings(objective="damage", samples=4, mass_ratio=0.02), ("tuned",))
+    parts = damage_of_modes(with_design(case, best.design))
+    assert len(parts) == 2
+    assert best.value == pytest.approx(sum(part.damage_with for part in parts), rel=1e-4)
+    assert parts[1].damage_with > 0.01 * best.value
