@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -20,8 +21,8 @@ Place = tuple[float, float]  # Omega [rad/s] and the pipe peak of a motion there
 def doubts_of(
     within: OperatingRange, wide: OperatingRange, curve: ResponseCurve, surveys: Mapping[float, AttractorSet],
     worst: tuple[float, Attractor], min_basin: float, beyond: Sequence[Place], fine: float,
-) -> list[str]:  # fmt: skip
-    """What speaks against the worst.
+) -> tuple[list[str], dict[str, float]]:  # fmt: skip
+    """What speaks against the worst; and of that what lies at or beyond an end, with the largest motion there [m].
 
     Parameters
     ----------
@@ -46,16 +47,17 @@ def doubts_of(
         doubts += surveys[at].unsettled(min_basin, f" at Omega = {at:.6g} rad/s")
     stable = curve.stable_or_limit & np.isfinite(curve.pipe_peak)
     met = [*beyond, *zip(curve.frequency[stable].tolist(), curve.pipe_peak[stable].tolist(), strict=True)]
+    ends: dict[str, float] = {}
     for end in range(2):
-        doubts += _at_an_end(end, within, wide, (W, attractor.pipe_peak), met, fine)
+        ends |= _at_an_end(end, within, wide, (W, attractor.pipe_peak), met, fine)
     inside = stable & (curve.frequency >= within.frequency[0]) & (curve.frequency <= within.frequency[1])
-    return list(dict.fromkeys([*doubts, *_rarely_reached(curve, inside, wide, attractor, min_basin)]))
+    return list(dict.fromkeys([*doubts, *ends, *_rarely_reached(curve, inside, wide, attractor, min_basin)])), ends
 
 
 def _at_an_end(
     end: int, within: OperatingRange, wide: OperatingRange, worst: Place, met: Sequence[Place], fine: float
-) -> list[str]:
-    """The worst at an end of the range, and what is larger beyond it: one cause, one sentence."""
+) -> dict[str, float]:
+    """The worst at an end of the range, and what is larger beyond it [m]: one cause, one sentence."""
     edge, sign = within.frequency[end], (-1, 1)[end]
     W, peak = worst
     beyond = [place for place in met if sign * (place[0] - edge) > 0]
@@ -64,9 +66,11 @@ def _at_an_end(
     sits = abs(W - edge) <= fine * W and not within.closed(end)
     text = f"at {wide.place(where)}, a motion of {larger:.4g} m is larger"
     if not sits:
-        return [f"Beyond the range, {text} than the worst inside."] if is_larger else []
+        return {f"Beyond the range, {text} than the worst inside.": larger} if is_larger else {}
     start = f"The worst motion sits at the {_ENDS[end]} end of the range, {within.place(edge)}"
-    return [f"{start}, and beyond it, {text}." if is_larger else f"{start}: beyond it may be larger."]
+    if is_larger:
+        return {f"{start}, and beyond it, {text}.": larger}
+    return {f"{start}: beyond it may be larger.": math.inf}
 
 
 def _rarely_reached(

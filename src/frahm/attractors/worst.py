@@ -365,9 +365,9 @@ def _concluded(
     W_relative, stroke = _largest(surveys, _relative, min_basin)
     W_rms, loudest = _largest(surveys, _rms, min_basin)
     moved = worst.pipe_peak > 0  # where nothing excites the pipe no wind is worse than another
-    found = doubts_of(within, wide, curve, surveys, (W, worst), min_basin, beyond, _FINE) if moved else [
-        *within.doubts, *curve.unverified,
-    ]  # fmt: skip
+    found, ends = [*within.doubts, *curve.unverified], dict[str, float]()
+    if moved:
+        found, ends = doubts_of(within, wide, curve, surveys, (W, worst), min_basin, beyond, _FINE)
     possible = [a.pipe_peak for s in surveys.values() for a in s if a.basin_interval[1] >= min_basin]
     motion = WorstMotion(
         pipe_peak=worst.pipe_peak,
@@ -387,6 +387,7 @@ def _concluded(
         samples=surveys[W].samples,
         searched=len(surveys),
         unverified=tuple(dict.fromkeys([*doubts, *found])),
+        beyond=ends,
     )
     return WorstCase(
         motion=motion,

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from frahm.arrays import Floats
+
+_LARGER = 1.01  # what is larger by less is as large
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +45,8 @@ class WorstMotion:
         Initial states at every frequency searched, and number of these.
     unverified : tuple of str
         What speaks against it; empty if nothing.
+    beyond : dict of str to float
+        Those of the doubts that are about an end of the range, and the largest motion there or beyond it [m].
     """
 
     pipe_peak: float
@@ -65,6 +69,7 @@ class WorstMotion:
     stress_range: float = math.nan
     stress_frequency: float = math.nan
     stress_section: float = math.nan
+    beyond: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def verified(self) -> bool:
@@ -106,7 +111,10 @@ class WorstMotion:
 
 
 def joined(motions: Sequence[WorstMotion]) -> WorstMotion:
-    """The worst of several ranges as one: the largest motion, the largest stroke, rms and stress, and every doubt."""
+    """The worst of several ranges as one: the largest motion, the largest stroke, rms and stress, and every doubt.
+
+    But for those about an end of a range where nothing comes near the largest motion of all.
+    """
     largest = max(motions, key=lambda motion: motion.pipe_peak)
     if len(motions) == 1:
         return largest
@@ -126,7 +134,14 @@ def joined(motions: Sequence[WorstMotion]) -> WorstMotion:
         range=_together(list(dict.fromkeys(motion.range for motion in motions))),
         tier=" and ".join(dict.fromkeys(motion.tier for motion in motions)),
         searched=sum(motion.searched for motion in motions),
-        unverified=tuple(dict.fromkeys(doubt for motion in motions for doubt in motion.unverified)),
+        unverified=tuple(
+            dict.fromkeys(
+                doubt
+                for motion in motions
+                for doubt in motion.unverified
+                if not _LARGER * motion.beyond.get(doubt, math.inf) < largest.pipe_peak
+            )
+        ),
     )
 
 

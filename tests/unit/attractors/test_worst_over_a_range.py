@@ -1,6 +1,7 @@
 """The worst over a range: too narrow a window is not vouched for, and linear peaks are those of closed forms."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from scipy.optimize import minimize_scalar
 
 import frahm
 from frahm.assessment import with_stress
+from frahm.attractors import joined
 from frahm.loads import operating_range, other_ranges
 
 BARE = frahm.load_case("jacket-pipe").without_absorbers()
@@ -137,3 +139,15 @@ def test_every_mode_an_elastic_pipe_is_excited_in_has_its_own_resonance():
     for peak in peaks:
         assert min(abs(value / peak - 1) for value in found) < 5e-3
     assert frahm.worst_case(SLENDER, wind=operating_range(SLENDER).wind).others == ()
+
+
+def test_what_lies_beyond_a_range_of_small_motions_does_not_speak_against_a_larger_one():
+    small = frahm.worst_case("jacket-pipe", detuning=(-0.4, -0.3), samples=4).motion
+    (doubt,) = small.unverified
+    assert "sits at the upper end" in doubt
+    assert small.pipe_peak < small.beyond[doubt] < 0.01
+    large = replace(small, pipe_peak=1.0, unverified=(), beyond={})
+    near = replace(small, pipe_peak=1.001 * small.pipe_peak, unverified=(), beyond={})
+    assert joined([large, small]).unverified == joined([small, large]).unverified == ()
+    assert joined([near, small]).unverified == (doubt,)
+    assert joined([large, replace(small, unverified=(doubt, "another"))]).unverified == ("another",)
