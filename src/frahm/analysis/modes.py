@@ -137,7 +137,7 @@ def _with_modes(case: Case, count: int) -> Case:
     return case.with_pipe(mode_count=count, damping_ratios=ratios)
 
 
-def _largest(peak: Floats, stable: Floats) -> float:
+def _largest(peak: Floats, stable: np.ndarray) -> float:
     return float(np.max(np.where(stable, peak, 0.0), initial=0.0))
 
 
