@@ -31,7 +31,7 @@ from frahm.analysis.section import FAIL, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import PERIODIC_BELOW
 from frahm.analysis.verdict import lock_in, verdict
 from frahm.analysis.wind import wind
-from frahm.assessment import accepted
+from frahm.assessment import accepted, nothing_to_judge
 from frahm.case import Case, field_values, load_case
 from frahm.harmonic_balance.search import GOAL
 from frahm.time_integration.batch import TOLERANCE
@@ -192,7 +192,9 @@ def _concluded(work: Work, interrupted: bool) -> Analysis:
     results = {"has_absorber": bool(work.case.absorbers), **done.results}
     failed = sum(check.status == FAIL for check in done.checks)
     doubts = len(done.unverified) + sum(check.status == UNVERIFIED for check in done.checks)
-    results["acceptance"] = accepted(judged_limits(work), not failed and not doubts and not interrupted)
+    results["acceptance"] = accepted(
+        judged_limits(work), not failed and not doubts and not interrupted, nothing_to_judge(work.case)
+    )
     results["verdict"] = verdict(results, failed, doubts)
     results["provenance"] = provenance(work.case)
     return Analysis(

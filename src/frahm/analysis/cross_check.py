@@ -25,6 +25,7 @@ POINTS = 9
 EXACT_BOUND = 1e-6
 PIPE_BOUND, RELATIVE_BOUND = 0.05, 0.10
 QUANTITIES = ("pipe", "relative")
+_COUNTS = 1e-3  # of the largest peak of a motion: what is smaller is compared with this share
 _LISTED = 4  # in a sentence
 _PERIODS, _WINDOW = 100, 20
 _TOLERANCE = 1e-11
@@ -112,24 +113,36 @@ def _table(
         "growth_rate": column(growth, "growth rate of a disturbance", "1/s"),
         "harmonics": column([max(response.harmonics) for response in responses], "highest harmonic", "1"),
     }
-    for which in QUANTITIES if system.elements else QUANTITIES[:1]:
+    names = QUANTITIES if system.elements else QUANTITIES[:1]
+    size = np.max([[getattr(response, f"{which}_peak") for response in responses] for which in names], axis=0)
+    for which in names:
         exact = np.array([getattr(response, f"{which}_peak") for response in responses])
         integrated = getattr(batch, f"{which}_peak")
         error = f"{which} peak, harmonic balance over integration, minus 1"
         variables[f"{which}_peak"] = column(exact, f"{which} peak by harmonic balance", "m")
         variables[f"integrated_{which}_peak"] = column(integrated, f"{which} peak by integration", "m")
-        variables[f"{which}_error"] = column(_error(exact, integrated), error, "1")
+        variables[f"{which}_error"] = column(_error(exact, integrated, size), error, "1")
         if theory is not None:
             error = f"{which} peak, slow flow over harmonic balance, minus 1"
             variables[f"slow_{which}_peak"] = column(theory[which], f"{which} peak by the slow flow", "m")
-            variables[f"slow_{which}_error"] = column(_error(theory[which], exact), error, "1")
+            variables[f"slow_{which}_error"] = column(_error(theory[which], exact, size), error, "1")
     return xr.Dataset(variables)
 
 
-def _error(approximate: Floats, exact: Floats) -> Floats:
-    """Relative error; 0 where both are the same, though it be 0."""
-    same = approximate == exact
-    return np.where(same, 0.0, approximate / np.where(same, 1.0, exact) - 1)
+def _error(approximate: Floats, exact: Floats, size: Floats) -> Floats:
+    """Relative error; of the smallest that counts, where less than that is left, as of a sink at a node of the mode.
+
+    Parameters
+    ----------
+    approximate, exact : ndarray
+    size : ndarray
+        Largest peak of the motion, of pipe or stroke [m].
+    """
+    least = _COUNTS * size
+    small = np.maximum(np.abs(approximate), np.abs(exact)) <= least
+    apart = np.where(small, approximate - exact, 0.0) / np.where(least > 0, least, 1.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(small, apart, approximate / exact - 1)
 
 
 def _errors(table: xr.Dataset, prefix: str = "") -> Floats:

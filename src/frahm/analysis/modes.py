@@ -14,6 +14,7 @@ from frahm.errors import ParameterError
 from frahm.harmonic_balance import PeriodicResponse, is_linear
 from frahm.loads import vortex_shedding
 from frahm.response import periodic_responses
+from frahm.response.curve import MARGINAL
 from frahm.response.exact import exact_curve
 from frahm.structure import ModalPipe
 from frahm.structure.modes import MOST_MODES
@@ -113,9 +114,10 @@ def _convergence(work: Work) -> tuple[Check, tuple[str, ...]]:
     changes = {}
     if "response" in work.done.data and not is_linear(work.system):
         curve = work.done.data["response"]
-        largest = _largest(curve["pipe_peak"].values, curve["stable"].values.astype(bool))
+        settled = curve["growth_rate"].values <= MARGINAL * curve["frequency"].values
+        largest = _largest(curve["pipe_peak"].values, settled)
         other = exact_curve(build_system(finer), *work.range.frequency, None, work.range.factor)
-        changes["largest stable pipe peak"] = _change(largest, _largest(other.pipe_peak, other.stable))
+        changes["largest stable pipe peak"] = _change(largest, _largest(other.pipe_peak, other.stable_or_limit))
     stresses = [_stress_at_the_wind(c) for c in (case, finer)]
     if None not in stresses:
         changes["stress at the wind of the case"] = _change(*stresses)  # type: ignore[arg-type]
@@ -135,7 +137,7 @@ def _with_modes(case: Case, count: int) -> Case:
     return case.with_pipe(mode_count=count, damping_ratios=ratios)
 
 
-def _largest(peak: Floats, stable: Floats) -> float:
+def _largest(peak: Floats, stable: np.ndarray) -> float:
     return float(np.max(np.where(stable, peak, 0.0), initial=0.0))
 
 

@@ -1,6 +1,6 @@
 """Room `assessment`: stress histories, cycles and fatigue damage over the attractors and the wind climate."""
 
-from frahm.assessment.acceptance import Utilisation, accepted, headline, utilisations
+from frahm.assessment.acceptance import Utilisation, accepted, headline, nothing_to_judge, utilisations
 from frahm.assessment.all_modes import damage_of_modes, doubts_of_modes, total_damage
 from frahm.assessment.closed_forms import constant_range_damage, weibull_damage
 from frahm.assessment.damage import FatigueDamage
@@ -22,6 +22,7 @@ __all__ = [
     "doubts_of_modes",
     "fatigue_damage",
     "headline",
+    "nothing_to_judge",
     "rainflow_cycles",
     "stress_places",
     "total_damage",

@@ -13,6 +13,7 @@ from frahm.case import Case, Limits
 VERDICTS = ("pass", "fail", "not verified")
 NOT_JUDGED = "NOT JUDGED"
 NO_LIMITS = "the case gives no limit to hold this motion against, see its section limits."
+ONLY_STROKE = "the only limit given is the stroke of an absorber (limits.stroke), and there is none."
 
 
 _SIZES = ("pipe_peak", "stress_range", "relative_peak")
@@ -68,10 +69,17 @@ def _shown(value: float, show: Callable[[float], str]) -> str:
     return "not known" if math.isnan(value) else show(value)
 
 
-def accepted(found: Sequence[Utilisation], verified: bool) -> dict[str, Any]:
+def nothing_to_judge(case: Case) -> str:
+    """Why no limit of a case was judged."""
+    alone = case.limits is not None and case.limits.stroke is not None and not case.absorbers
+    return ONLY_STROKE if alone else NO_LIMITS
+
+
+def accepted(found: Sequence[Utilisation], verified: bool, nothing: str = NO_LIMITS) -> dict[str, Any]:
     """The verdict: "fail" if a limit is exceeded, "pass" if all are kept and nothing is in doubt, else "not verified".
 
-    Where there is no limit nothing is judged, and nothing can pass: "not verified" with the headline NOT JUDGED.
+    Where there is no limit nothing is judged, and nothing can pass: "not verified" with the headline NOT JUDGED, and
+    `nothing` says why.
     """
     failed = any(row.ratio > 1 for row in found)
     known = bool(found) and not any(math.isnan(row.ratio) for row in found)
@@ -81,7 +89,7 @@ def accepted(found: Sequence[Utilisation], verified: bool) -> dict[str, Any]:
         "utilisation": {row.name: row.ratio for row in found},
         "rows": [{**vars(row), "ratio": row.ratio} for row in found],
     }
-    return judged | {"sentence": _sentence(found, headline(judged))}
+    return judged | {"sentence": _sentence(found, headline(judged), nothing)}
 
 
 def headline(judged: Mapping[str, Any]) -> str:
@@ -89,9 +97,9 @@ def headline(judged: Mapping[str, Any]) -> str:
     return str(judged["verdict"]).upper() if judged["rows"] else NOT_JUDGED
 
 
-def _sentence(found: Sequence[Utilisation], word: str) -> str:
+def _sentence(found: Sequence[Utilisation], word: str, nothing: str) -> str:
     if not found:
-        return f"{word}: {NO_LIMITS}"
+        return f"{word}: {nothing}"
     beyond = [row for row in found if row.ratio > 1]
     if beyond:
         return f"{word}: " + "; ".join(f"{row.text}, {readable.share(row.ratio)}" for row in beyond) + "."

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import Any
 
 import numpy as np
 
 from frahm.assessment.damage import FatigueDamage
-from frahm.assessment.fatigue import fatigue_damage
+from frahm.assessment.fatigue import counted_band, damage_beside
+from frahm.assessment.verdict import doubts_of_the_rest
 from frahm.case import Case
 from frahm.loads import operating_range, other_ranges
 
@@ -17,12 +19,15 @@ def damage_of_modes(case: Case) -> tuple[FatigueDamage, ...]:
     """The damage in the range of operation of a case, and that of each other mode over the winds that excite it.
 
     A case that names its winds (`fatigue.wind_speeds`, `analysis.wind` or `analysis.detuning`) is counted over these
-    alone.
+    alone. What winds in none of these bands do speaks against the first part.
     """
-    first = fatigue_damage(case)
     named = case.fatigue is not None and case.fatigue.wind_speeds is not None
     others = () if named or not operating_range(case).moves else other_ranges(case)
-    return (first, *(fatigue_damage(other, wind=part.winds) for other, part in others if part.over_wind))
+    wanted = [(case, counted_band(case)), *((other, part.winds) for other, part in others if part.winds is not None)]
+    bands = [band for _, band in wanted]
+    first, *rest = (damage_beside(one, bands, wind=band) for one, band in wanted)
+    doubts = doubts_of_the_rest((first, *rest))
+    return (dataclasses.replace(first, unverified=(*first.unverified, *doubts)), *rest)
 
 
 def total_damage(parts: tuple[FatigueDamage, ...]) -> dict[str, Any]:

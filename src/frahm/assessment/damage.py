@@ -38,7 +38,10 @@ class FatigueDamage:
     lock_in : (float, float)
         That band [m/s].
     outside_without : float
-        Damage by winds outside the band, without absorbers [-]; not part of the others.
+        Damage by winds outside the band, without absorbers [-]; not part of the others. Where the damage of several
+        modes is summed, by winds outside the band of every mode.
+    outside_wind : float
+        Wind that does most of it [m/s]; NaN if none does any.
     speeds, lower, upper : ndarray, shape (b,)
         Middle and ends of the wind bins [m/s].
     frequencies, detunings : ndarray, shape (b,)
@@ -77,6 +80,7 @@ class FatigueDamage:
     locked_in_with: float
     locked_in_without: float
     outside_without: float
+    outside_wind: float
     lock_in: tuple[float, float]
     speeds: Floats
     lower: Floats

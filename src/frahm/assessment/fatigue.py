@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,8 @@ from frahm.arrays import Floats, frozen
 from frahm.assessment.damage import FatigueDamage
 from frahm.assessment.detail import Detail, detail_of, fatigue_section, other_places
 from frahm.assessment.linear_damage import LinearPipe, linear_damage, linear_pipe
-from frahm.assessment.verdict import doubts_of, notes_of
-from frahm.assessment.wind_bins import first_edges, interpolated_damage, middles, refined
+from frahm.assessment.verdict import doubts_of, doubts_of_the_rest, notes_of
+from frahm.assessment.wind_bins import first_edges, gaps, interpolated_damage, middles, refined
 from frahm.assessment.wind_survey import WindSurvey
 from frahm.case import Case, load_case
 from frahm.errors import check_count
@@ -83,6 +84,25 @@ def fatigue_damage(
         If the case has no climate or no detail, or for bad input. What could not be settled the result names.
     """
     case = load_case(case)
+    found = damage_beside(case, (), bins, wind=wind, samples=samples, seed=seed, workers=workers, progress=progress)
+    return dataclasses.replace(found, unverified=(*found.unverified, *doubts_of_the_rest((found,))))
+
+
+def damage_beside(
+    case: Case,
+    others: Sequence[tuple[float, float]],
+    bins: int | None = None,
+    *,
+    wind: tuple[float, float] | None = None,
+    samples: int | None = None,
+    seed: int | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> FatigueDamage:
+    """`fatigue_damage` where winds of other bands [m/s] are counted elsewhere, and nothing said of those nobody counts.
+
+    `doubts_of_the_rest` of all parts together says it.
+    """
     fatigue, climate = fatigue_section(case), wind_climate(case)
     count = check_count("bins", fatigue.bins if bins is None else bins, at_least=4, at_most=2000)
     samples = check_count("samples", fatigue.samples if samples is None else samples, at_most=100_000)
@@ -94,9 +114,9 @@ def fatigue_damage(
     resonances = [] if bare is None else [speed for speed, _ in bare.resonances(*band)]
     if is_linear(build_system(case)) or bare is None:
         edges = first_edges(*band, count, resonances)
-        return _result(survey, bare, linear_pipe(case), climate, edges)
+        return _result(survey, bare, linear_pipe(case), climate, edges, others)
     survey, edges = surveyed(survey, climate, band, count, resonances)
-    return _result(survey, bare, None, climate, edges)
+    return _result(survey, bare, None, climate, edges, others)
 
 
 def surveyed(
@@ -124,8 +144,8 @@ def counted_band(case: Case, given: tuple[float, float] | None = None) -> tuple[
     if given is not None:
         return speed_window(case, given)
     within = operating_range(case)
-    if within.wind is not None:
-        return within.wind
+    if within.winds is not None:
+        return within.winds
     excitation = wind_excitation(case)
     low, high = max(excitation.speed_range[0], _CALM), min(excitation.speed_range[1], _STORM)
     found = excitation.speed(np.array(within.frequency), low, high)
@@ -173,8 +193,9 @@ def _sum(survey: WindSurvey, climate: WindClimate, edges: Floats) -> float:
 
 
 def _result(
-    survey: WindSurvey, bare: LinearPipe | None, linear: LinearPipe | None, climate: WindClimate, edges: Floats
-) -> FatigueDamage:
+    survey: WindSurvey, bare: LinearPipe | None, linear: LinearPipe | None, climate: WindClimate, edges: Floats,
+    others: Sequence[tuple[float, float]],
+) -> FatigueDamage:  # fmt: skip
     case, detail = survey.case, survey.place
     bare_detail = _bare_detail(detail, case)
     excitation, speeds = wind_excitation(case), middles(edges)
@@ -202,14 +223,15 @@ def _result(
         bin_weighted, number, unsettled, kinds = bin_with, none + 1, none, ("linear",) * speeds.size
         locked = _locked_in(linear, detail, climate, edges, held)
     growth = case.pipe.damping_ratio * case.pipe.frequency
-    outside, worst_outside = _outside(bare, bare_detail, climate, edges)
+    counted_winds = [(float(edges[0]), float(edges[-1])), *others]
+    outside, worst_outside = _outside(bare, bare_detail, climate, counted_winds)
     known: dict[str, Any] = dict(  # noqa: C408 keyword by keyword, as the result takes them
         damage_with=float(np.sum(bin_with)),
         damage_with_weighted=float(np.sum(bin_weighted)),
         damage_without=float(np.sum(without)),
         locked_in_with=locked,
         locked_in_without=_locked_in(bare, bare_detail, climate, edges, held),
-        outside_without=outside,
+        outside_without=outside, outside_wind=worst_outside,
         speeds=frozen(speeds), lower=frozen(edges[:-1]), upper=frozen(edges[1:]),
         frequencies=frozen(excitation.frequency(speeds)),
         detunings=frozen(excitation.frequency(speeds) - case.pipe.frequency),
@@ -220,9 +242,7 @@ def _result(
         stress_range_without=float(np.max(range_without, initial=0.0)), section=detail.section, case=case,
         lock_in=lock_in, settings=_settings(survey, climate),
     )  # fmt: skip
-    return FatigueDamage(
-        **known, unverified=doubts_of(known, survey, bare, linear, worst_outside), notes=notes_of(known, survey)
-    )
+    return FatigueDamage(**known, unverified=doubts_of(known, survey, bare, linear), notes=notes_of(known, survey))
 
 
 def _bare_detail(detail: Detail, case: Case) -> Detail:
@@ -259,19 +279,20 @@ def _locked_in(pipe: LinearPipe | None, detail: Detail, climate: WindClimate, ed
     return climate.duration * chance * float(np.max(pipe.rate(speeds, detail)))
 
 
-def _outside(pipe: LinearPipe | None, detail: Detail, climate: WindClimate, edges: Floats) -> tuple[float, float]:
-    """Damage by all other winds, in closed form, and the wind speed [m/s] near which most of it is done."""
+def _outside(
+    pipe: LinearPipe | None, detail: Detail, climate: WindClimate, counted: Sequence[tuple[float, float]]
+) -> tuple[float, float]:
+    """Damage by all winds in none of the bands counted, in closed form, and the wind [m/s] that does most of it."""
     if pipe is None or not pipe.decays:
         return (0.0 if pipe is None else math.inf), math.nan
     low, high = max(pipe.excitation.speed_range[0], _CALM), min(pipe.excitation.speed_range[1], _STORM)
     total, worst, where = 0.0, 0.0, math.nan
-    for first, last in ((low, edges[0]), (edges[-1], high)):
-        if last > first:
-            ends = np.linspace(first, last, _OUTSIDE)
-            parts = linear_damage(pipe, detail, climate, ends)[0]
-            total += float(np.sum(parts))
-            if parts.max() > worst:
-                worst, where = float(parts.max()), float(middles(ends)[np.argmax(parts)])
+    for first, last in gaps(low, high, counted):
+        ends = np.linspace(first, last, _OUTSIDE)
+        parts = linear_damage(pipe, detail, climate, ends)[0]
+        total += float(np.sum(parts))
+        if parts.max() > worst:
+            worst, where = float(parts.max()), float(middles(ends)[np.argmax(parts)])
     return total, where
 
 

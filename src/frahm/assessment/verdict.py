@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -12,11 +13,14 @@ from frahm.assessment.detail import fatigue_section
 from frahm.assessment.motion_damage import SETTLED
 
 if TYPE_CHECKING:
+    from frahm.assessment.damage import FatigueDamage
     from frahm.assessment.linear_damage import LinearPipe
     from frahm.assessment.wind_survey import WindFindings, WindSurvey
 
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e[+-]?\d+)?")
 _COARSE = 0.2  # relative change of the damage between two ways to sum over the bins
 _COUNTS = 1e-2  # share of the largest rate below which a motion that has not settled cannot matter
+_NEGLIGIBLE = 0.05  # share of the damage counted that may be left out
 _NOTABLE = 1e-4  # damage too small for any design fatigue factor to matter
 
 
@@ -25,9 +29,8 @@ def doubts_of(
     survey: WindSurvey,
     bare: LinearPipe | None,
     linear: LinearPipe | None,
-    worst_outside: float,
 ) -> tuple[str, ...]:
-    """What speaks against the numbers."""
+    """What speaks against the numbers, the winds that are not counted apart."""
     found = [survey.at[speed] for speed in sorted(survey.at)]
     doubts = [*unsettled_winds(found), *_uncounted(found), *_drifting(found), *_not_searched(found)]
     if known["binning"] > _COARSE:
@@ -37,23 +40,43 @@ def doubts_of(
         )
     if any(pipe is not None and not pipe.decays for pipe in (bare, linear)):
         doubts.append("Without damping free motions never die out, and the damage of the linear pipe has no bound.")
-    outside, inside = known["outside_without"], known["damage_with"]
-    if outside > _NOTABLE and outside > 0.05 * inside:
-        doubts.append(
-            f"Winds outside the band do a damage of {outside:.2g} to the pipe without absorbers, most of it near"
-            f" {worst_outside:.3g} m/s, which is not counted: widen the band (fatigue.wind_speeds, or"
-            " analysis.detuning)."
-        )
     return tuple(doubts)
 
 
+def doubts_of_the_rest(parts: Sequence[FatigueDamage]) -> tuple[str, ...]:
+    """What speaks against parts that are summed, for winds that none of them counts: once, by the part they harm most.
+
+    Every wind sheds at one frequency, so that its damage is in step with one mode and not with all.
+    """
+    most = max(parts, key=lambda part: part.outside_without)
+    outside, inside = most.outside_without, sum(part.damage_with for part in parts)
+    if not (outside > _NOTABLE and outside > _NEGLIGIBLE * inside):
+        return ()
+    band = "the band" if len(parts) == 1 else "all bands"
+    return (
+        f"Winds outside {band} do a damage of {outside:.2g} to the pipe without absorbers, most of it near"
+        f" {most.outside_wind:.3g} m/s, which is not counted: widen the band (fatigue.wind_speeds, or"
+        " analysis.detuning).",
+    )
+
+
 def _not_searched(found: Sequence[WindFindings]) -> list[str]:
-    """What the searches for periodic responses could not verify, and at which winds."""
-    winds: dict[str, list[float]] = {}
+    """What the searches for periodic responses could not verify, and at which winds.
+
+    Sentences that differ in their numbers alone are one, with the numbers of the first wind.
+    """
+    winds: dict[str, list[WindFindings]] = {}
+    says: dict[str, str] = {}
     for at in found:
         for doubt in at.found.unverified:
-            winds.setdefault(doubt, []).append(at.speed)
-    return [f"At {min(speeds):.4g} to {max(speeds):.4g} m/s: {doubt}" for doubt, speeds in winds.items()]
+            kind = _NUMBER.sub("#", doubt)
+            says.setdefault(kind, doubt)
+            if at not in winds.setdefault(kind, []):
+                winds[kind].append(at)
+    return [
+        f"{_where(at)}{f', here at {at[0].speed:.4g} m/s' if len(at) > 1 else ''}: {says[kind]}"
+        for kind, at in winds.items()
+    ]
 
 
 def notes_of(known: Mapping[str, Any], survey: WindSurvey) -> tuple[str, ...]:

@@ -57,6 +57,16 @@ def refined(edges: Floats, count: int, look: Look, loss: Callable[[Floats], Floa
     return edges
 
 
+def gaps(low: float, high: float, bands: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """What bands of wind speeds [m/s] leave of those between `low` and `high`, ascending."""
+    left, at = [], low
+    for first, last in sorted((min(band), max(band)) for band in bands):
+        if min(first, high) > at:
+            left.append((at, min(first, high)))
+        at = max(at, last)
+    return [*left, (at, high)] if at < high else left
+
+
 def middles(edges: Floats) -> Floats:
     """Middles of bins, rounded so that the middle of a bin and of its middle third are one number."""
     return np.round(0.5 * (edges[1:] + edges[:-1]), 12)

@@ -12,6 +12,7 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.assessment.detail import Detail
+from frahm.assessment.lasting_part import lasting
 from frahm.assessment.motion_damage import MotionDamage, largest_place, motion_damage
 from frahm.attractors import Attractor, AttractorSet
 from frahm.attractors.finding import attractors_from, attractors_reached, settling_periods
@@ -188,10 +189,11 @@ class WindSurvey:
         W = float(wind_excitation(self.case).frequency(speed))
         responses = periodic_responses_of(system, W, None)
         region = default_region(system, W, responses)
+        strobe = _strobe(system, W)
         found = attractors_from(
-            _strobe(system, W), responses, region, self.samples, self.seed, settling_periods(system, W),
-            responses.unverified,
-        )  # fmt: skip
+            strobe, responses, region, self.samples, self.seed, settling_periods(system, W), responses.unverified
+        )
+        found = lasting(strobe, responses, found)
         damage = self._damage(system, found)
         return WindFindings(speed, W, system, tuple(responses), found, damage)
 
@@ -199,7 +201,8 @@ class WindSurvey:
         here = self.at[speed]
         strobe = _strobe(here.system, here.frequency)
         periods = settling_periods(here.system, here.frequency)
-        reached = attractors_reached(strobe, here.responses, self._from_neighbours(speed), periods)
+        reached = tuple(attractors_reached(strobe, here.responses, self._from_neighbours(speed), periods))
+        reached = lasting(strobe, here.responses, dataclasses.replace(here.found, attractors=reached)).attractors
         new = tuple(one for one in reached if not any(_alike(one, known) for known in here.found))
         damage = self._damage(here.system, new)
         found = dataclasses.replace(here.found, attractors=(*here.found.attractors, *new))

@@ -10,7 +10,9 @@ from frahm.case import Absorber
 from frahm.plausibility.implausible import Implausible, Inputs
 from frahm.systems import build_system
 
-MASS_RATIO = (1e-3, 0.5)
+MASS_RATIO = (0.005, 0.1)
+_IDLE = 1e-3  # mass ratio
+_ROUNDING = 1e-9
 FREQUENCY_RATIO = (0.2, 5.0)
 STROKE = (1e-3, 1.0)  # over the diameter
 MOST_DAMPING = 2.0  # c/(m omega): critical
@@ -34,12 +36,14 @@ def _mass(inputs: Inputs, path: str, absorber: Absorber) -> Iterator[Implausible
     pipe = inputs.case.pipe
     motion = abs(float(pipe.modal.displacement(absorber.position)[0]))
     ratio = absorber.mass * motion**2 / pipe.mass
-    if MASS_RATIO[0] <= ratio <= MASS_RATIO[1]:
+    if MASS_RATIO[0] * (1 - _ROUNDING) <= ratio <= MASS_RATIO[1] * (1 + _ROUNDING):
         return
     where = f" where the governing mode moves by {motion:.3g}" if motion < 1 - 1e-9 else ""
+    light = f"less than {_IDLE:g} does next to nothing" if ratio < _IDLE else "a lighter one takes little out"
     reason = (
         f"{ratio:.3g} of the {'modal ' if pipe.modal.shapes else ''}mass of the pipe, {pipe.mass:.4g} kg{where};"
-        f" dampers have 0.005 to 0.1 of it, a rule of thumb, and less than {MASS_RATIO[0]:g} does next to nothing."
+        f" dampers have {MASS_RATIO[0]:g} to {MASS_RATIO[1]:g} of it, a rule of thumb, and"
+        f" {light if ratio < MASS_RATIO[0] else 'the weight of a heavier one is a load of its own'}."
     )
     low = absorber.mass * motion**2 * 1e-3 <= MASS_RATIO[1] * pipe.mass
     yield inputs.implausible(f"{path}.mass", reason, ["g"] if ratio > MASS_RATIO[1] and low else [])

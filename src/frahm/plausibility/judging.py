@@ -9,6 +9,7 @@ from typing import Any
 from frahm.case import Case, load_case
 from frahm.plausibility.absorbers import judged_absorbers
 from frahm.plausibility.implausible import Implausible, Inputs
+from frahm.plausibility.limiting import judged_limits
 from frahm.plausibility.pipes import judged_pipe
 from frahm.plausibility.ranges import judged_by_size
 from frahm.plausibility.winds import judged_wind
@@ -35,6 +36,7 @@ def plausibility(case: Case | str | os.PathLike[str] | Mapping[str, Any]) -> tup
         If the case cannot be read.
     """
     inputs = Inputs(load_case(case))
-    found = (*judged_by_size(inputs), *judged_pipe(inputs), *judged_wind(inputs), *judged_absorbers(inputs))
+    judges = (judged_by_size, judged_pipe, judged_wind, judged_absorbers, judged_limits)
+    found = [one for judge in judges for one in judge(inputs)]
     order = {path: place for place, path in enumerate(inputs.values)}
     return tuple(sorted(found, key=lambda one: order[one.name]))

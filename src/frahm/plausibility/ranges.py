@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -57,12 +58,12 @@ USUAL = (
     Usual("absorbers[].gravity", -9.9, 9.9, "gravity has 9.81 m/s^2, along a vertical motion."),
     Usual("design.stroke", 1e-4, 5, f"devices move by 0.1 mm to 5 m, {_THUMB}.", ("mm",)),
     Usual("design.spring_length", 1e-3, 20, f"springs are 1 mm to 20 m long, {_THUMB}.", ("mm",)),
-    Usual("limits.displacement", 1e-5, 10, f"pipes are let move by 0.01 mm to 10 m, {_THUMB}.", ("mm",)),
+    Usual("limits.displacement", 1e-5, math.inf, f"pipes are let move by 0.01 mm or more, {_THUMB}."),
     Usual("limits.amplitude_ratio", 1e-5, 2, f"nothing moves by more than two diameters, {_THUMB}.", ("%",)),
     Usual("limits.stress_range", 1e5, 1.5e9, f"details are let swing by 0.1 to 1500 MPa, {_THUMB}.", ("MPa",)),
     Usual("limits.yield_strength", 5e7, 2e9, "structural steel yields at 235 to 700 MPa.", ("MPa",)),
     Usual("limits.static_stress", 0, 1.5e9, f"no more than steel bears, {_THUMB}.", ("MPa",)),
-    Usual("limits.stroke", 1e-4, 5, f"devices move by 0.1 mm to 5 m, {_THUMB}.", ("mm",)),
+    Usual("limits.stroke", 1e-4, math.inf, f"devices move by 0.1 mm or more, {_THUMB}."),
     Usual("design.spring_stress", 5e7, 2e9,
           f"spring steel is stressed to 200 to 1000 MPa in shear, {_THUMB}.", ("MPa",)),
 )  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -25,12 +26,14 @@ STROUHAL = (0.1, 0.5)
 LARGEST_LIFT = 1.0
 LARGEST_AMPLITUDE = 1.0  # over the diameter
 REYNOLDS = (300.0, 3e5)
+_CONVERTED = 1e-13  # what the way from hertz and back may round
 _BAND = "0.83 to 1.25 of a natural frequency, as in DNV-RP-C205 (quoted from memory)"
 
 
 def judged_wind(inputs: Inputs) -> Iterator[Implausible]:
     """What is implausible about the wind and what it does."""
     yield from _speed(inputs)
+    yield from _plain_frequencies(inputs)
     yield from _mode_reached(inputs)
     yield from _site(inputs)
     yield from _coefficients(inputs)
@@ -49,21 +52,15 @@ def _speed(inputs: Inputs) -> Iterator[Implausible]:
 
 
 def _mode_reached(inputs: Inputs) -> Iterator[Implausible]:
-    """The wind of the case should shed near a natural frequency; if it does near 2 pi times one, hertz were meant."""
+    """The wind of the case should shed near a natural frequency."""
     case, shed = inputs.case, vortex_shedding(inputs.case)
     natural = np.sort(case.pipe.modal.frequencies)
     ratios = shed.frequency / natural
     if np.any(_locks_in(ratios)):
         return
-    path = "pipe.frequency" if isinstance(case.pipe, Pipe) else f"pipe.modes[{case.pipe.governing_mode - 1}].frequency"
-    as_hertz = shed.frequency_hz / case.pipe.frequency
-    if path in inputs.values and inputs.bare(path) and _locks_in(as_hertz):
-        reason = (
-            f"A plain number is in rad/s, so this is {case.pipe.frequency / (2 * math.pi):.4g} Hz; the wind of"
-            f" {shed.speed:g} m/s sheds at {shed.frequency_hz:.4g} Hz."
-        )
-        yield inputs.implausible(path, reason, ["Hz"])
-        return
+    path = _frequency_field(inputs)
+    if path in inputs.values and inputs.bare(path) and _locks_in(shed.frequency_hz / case.pipe.frequency):
+        return  # that is said of the frequency
     nearest = natural[int(np.argmin(np.abs(np.log(ratios))))]
     reason = (
         f"It sheds at {shed.frequency_hz:.4g} Hz, {shed.frequency / nearest:.3g} times the nearest natural frequency of"
@@ -74,6 +71,35 @@ def _mode_reached(inputs: Inputs) -> Iterator[Implausible]:
     if not isinstance(case.pipe, Pipe) and ratios[-1] > LOCK_IN_RATIOS[1]:
         reason += f" It is above all {natural.size} modes: higher ones may be missing."
     yield inputs.implausible("wind.speed", reason)
+
+
+def _frequency_field(inputs: Inputs) -> str:
+    pipe = inputs.case.pipe
+    return "pipe.frequency" if isinstance(pipe, Pipe) else f"pipe.modes[{pipe.governing_mode - 1}].frequency"
+
+
+def _plain_frequencies(inputs: Inputs) -> Iterator[Implausible]:
+    """A natural frequency without a unit is in rad/s, where most are thought of in hertz.
+
+    What is round in hertz was converted from them: so are the cases that frahm itself writes.
+    """
+    case, shed = inputs.case, vortex_shedding(inputs.case)
+    for path, field in inputs.values.items():
+        if (
+            not re.fullmatch(r"pipe\.(modes\[\d+\]\.)?frequency", path)
+            or not inputs.bare(path)
+            or _is_round(field.value)
+        ):
+            continue
+        reason = f"A plain number is in rad/s, so this is {field.value / (2 * math.pi):.4g} Hz"
+        if path == _frequency_field(inputs) and _locks_in(shed.frequency_hz / case.pipe.frequency):
+            reason += f"; the wind of {shed.speed:g} m/s sheds at {shed.frequency_hz:.4g} Hz"
+        yield inputs.implausible(path, f"{reason}. A unit says which: {field.value:.6g} rad/s.", ["Hz"])
+
+
+def _is_round(frequency: float) -> bool:
+    hertz = frequency / (2 * math.pi)
+    return math.isclose(hertz, float(f"{hertz:.6g}"), rel_tol=_CONVERTED)
 
 
 def _site(inputs: Inputs) -> Iterator[Implausible]:

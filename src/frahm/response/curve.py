@@ -14,7 +14,7 @@ from frahm.arrays import Floats, labelled
 if TYPE_CHECKING:
     import xarray as xr
 
-_MARGINAL = 1e-7  # growth over frequency below which a special point is met: 1e-9 there, 1e-5 at its neighbours
+MARGINAL = 1e-7  # growth over frequency below which a special point is met: 1e-9 there, 1e-5 at its neighbours
 SPECIAL_KINDS = ("saddle-node", "hopf", "neimark-sacker", "period-doubling", "branch-point")
 
 
@@ -146,7 +146,7 @@ class ResponseCurve:
     @property
     def stable_or_limit(self) -> np.ndarray:
         """Where a response is stable, or the limit of stable ones: at a special point rounding decides which."""
-        return np.asarray(self.growth_rate <= _MARGINAL * self.frequency)
+        return np.asarray(self.growth_rate <= MARGINAL * self.frequency)
 
     def largest(self, *, stable_only: bool = False) -> tuple[float, float]:
         """Largest pipe peak [m] on the curve and its frequency [rad/s]; NaN if no point qualifies.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -37,13 +38,14 @@ def decision(case: Case, progress: Callable[[str, int, int], None], *, device: s
     from frahm.analysis.fatigue import fatigue
     from frahm.analysis.linear import without_absorber
     from frahm.analysis.section import FAIL, UNVERIFIED, Work
-    from frahm.assessment import accepted, utilisations
+    from frahm.assessment import accepted, nothing_to_judge, utilisations
     from frahm.design.tuned import textbook_damper
 
     if device == "bare":
-        return _bare(
-            case, without_absorber(Work(case)), fatigue(Work(case.without_absorbers())), utilisations, accepted
-        )
+        alone = case.without_absorbers()
+        rows_of = functools.partial(utilisations, alone)
+        judged = functools.partial(accepted, nothing=nothing_to_judge(alone))
+        return _bare(without_absorber(Work(case)), fatigue(Work(alone)), rows_of, judged)
     steps = [step for step in STEPS if step.run.__name__ not in (*_ONLY_SHOWN, *_LEFT_TO_THE_REPORT)]
     work = Work(textbook_damper(case, MASS_RATIO) if device == "tuned" else case)
     for number, step in enumerate(steps):
@@ -53,17 +55,17 @@ def decision(case: Case, progress: Callable[[str, int, int], None], *, device: s
     results = work.done.results
     return {
         "worst": results.get("worst_case"),
-        "acceptance": accepted(judged_limits(work), not doubts),
+        "acceptance": accepted(judged_limits(work), not doubts, nothing_to_judge(work.case)),
         "unverified": doubts,
         "lock_in": results.get("lock_in"),
         "range": results.get("range"),
     }
 
 
-def _bare(case: Case, found: Any, damaged: Any, utilisations: Any, accepted: Any) -> dict[str, Any]:
+def _bare(found: Any, damaged: Any, utilisations: Any, accepted: Any) -> dict[str, Any]:
     """The pipe without absorbers over the range of the case."""
     worst = found.results["without_absorber"].get("worst")
-    rows = utilisations(case.without_absorbers(), worst, damaged.results.get("fatigue"))
+    rows = utilisations(worst, damaged.results.get("fatigue"))
     doubts = [*found.notes] if worst is None else [*worst["unverified"], *damaged.unverified]
     return {
         "worst": worst,

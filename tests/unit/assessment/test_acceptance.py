@@ -5,7 +5,8 @@ import math
 import pytest
 
 import frahm
-from frahm.assessment import accepted, headline, utilisations
+from frahm.assessment import accepted, headline, nothing_to_judge, utilisations
+from frahm.assessment.acceptance import NO_LIMITS, ONLY_STROKE
 
 WORST = {"pipe_peak": 0.0381, "stress_range": 80e6, "relative_peak": 0.06}
 FATIGUE = {"utilisation_with": 0.4}
@@ -75,6 +76,14 @@ def test_a_bare_pipe_has_no_stroke():
     bare = frahm.load_case("jacket-pipe").without_absorbers()
     case = frahm.load_case(bare.to_dict() | {"limits": {"stroke": 0.1, "displacement": 0.1}})
     assert [row.name for row in utilisations(case, WORST, None)] == ["displacement"]
+
+
+def test_a_bare_pipe_with_a_limit_of_the_stroke_alone_is_told_so():
+    bare = frahm.load_case("jacket-pipe").without_absorbers()
+    case = frahm.load_case(bare.to_dict() | {"limits": {"stroke": 0.1}})
+    sentence = accepted(utilisations(case, WORST, None), True, nothing_to_judge(case))["sentence"]
+    assert sentence == f"NOT JUDGED: {ONLY_STROKE}"
+    assert nothing_to_judge(bare) == NO_LIMITS
 
 
 @pytest.mark.parametrize(("limit", "value"), [("stroke", -1), ("stress_range", 0), ("yield_strength", "20 mm")])

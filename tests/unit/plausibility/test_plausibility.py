@@ -47,7 +47,23 @@ def test_a_table_of_modes_is_plausible():
     assert frahm.plausibility(table()) == ()
 
 
+def limited(case, **limits):
+    return frahm.load_case(case.to_dict() | {"limits": limits})
+
+
+UNSTRESSED = MODE.without_absorbers()
+
 FIRES = [
+    (MODE.with_pipe(frequency=4.9), "pipe.frequency", r"0\.7799 Hz\. A unit says which: 4\.9 rad/s\. Was 4\.9 Hz"),
+    (table(frequency=5.0), "pipe.modes[0].frequency", r"rad/s, so this is 0\.7958 Hz.* Was 5 Hz meant\?"),
+    (limited(MODE, stroke=5), "limits.stroke", r"6\.56 times the diameter of the pipe, 0\.762 m.* Was 5 mm meant\?"),
+    (limited(MODE, displacement="5 m"), "limits.displacement", r"6\.56 times the diameter .*ever be reached\.$"),
+    (limited(MODE, stress_range="60 MPa"), "limits.stress_range", r"stress is not known: .*stress_per_displacement"),
+    (limited(table(), yield_strength="355 MPa"), "limits.yield_strength", r"the modes .* need their stresses"),
+    (limited(MODE, damage=0.5), "limits.damage", r"Without the section fatigue no damage is counted"),
+    (limited(UNSTRESSED, stroke="30 mm"), "limits.stroke", r"no absorber.*frahm design judges"),
+    (MODE.with_absorber(rho2=0.2), "absorbers[0].mass", r"0\.2 of the mass of the pipe.*a load of its own"),
+    (MODE.with_absorber(rho2=0.002), "absorbers[0].mass", r"0\.002 of the mass.*a lighter one takes little"),
     (MODE.with_pipe(frequency=0.78), "pipe.frequency", r"0\.1241 Hz.*sheds at 0\.7972 Hz.* Was 0\.78 Hz meant\?"),
     (table(frequency=0.8), "pipe.modes[0].frequency", r"Was 0\.8 Hz meant\?"),
     (MODE.with_pipe(frequency="0.1241 Hz"), "wind.speed", r"sheds at 0\.7972 Hz, 6\.42 times .* 0\.1241 Hz"),
@@ -118,6 +134,17 @@ def test_a_site_with_all_winds_is_plausible():
     assert (
         frahm.plausibility(TUBE.with_wind(range=(0, 40), speed=3.3, lift_coefficient="en1991", strouhal="en1991")) == ()
     )
+
+
+def test_limits_that_can_be_judged_are_plausible():
+    assert frahm.plausibility(limited(MODE, stroke="100 mm", displacement="50 mm")) == ()
+    assert frahm.plausibility(limited(TUBE, stress_range="60 MPa", yield_strength="355 MPa")) == ()
+
+
+def test_a_frequency_that_was_hertz_before_it_was_written_is_not_asked_about():
+    """Results are written in SI units: 0.78 Hz as 4.900884539600077."""
+    assert frahm.plausibility(MODE.with_pipe(frequency=2 * math.pi * 0.78)) == ()
+    assert frahm.plausibility(MODE.with_pipe(frequency="4.9 rad/s")) == ()
 
 
 def test_the_stress_per_displacement_is_held_against_that_of_a_tube():
