@@ -21,6 +21,7 @@ reproduce: setup
 	$(BIN)/frahm reproduce --out out/reproduce
 
 test: setup
+	$(BIN)/frahm warmup  # once, so that all processes of the tests find the same kernels
 	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 bounds:

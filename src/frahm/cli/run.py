@@ -96,7 +96,8 @@ def warmup() -> None:
     from frahm.time_integration import unsteady_response
 
     start = time.perf_counter()
-    analyse("jacket-pipe")
+    with compiled_ahead():
+        analyse("jacket-pipe")
     unsteady_response("jacket-pipe", record=([0.0, 1.0], [2.7, 2.7]))
     verified_designs("jacket-pipe", DesignSettings(samples=2), ("tuned", "sink"))
     typer.echo(f"The kernels are compiled and stored; this took {time.perf_counter() - start:.1f} s.")
