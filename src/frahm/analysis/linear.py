@@ -115,7 +115,7 @@ def bare_worst(work: Work) -> WorstMotion:
 
 
 def others_of(work: Work) -> tuple[tuple[Case, OperatingRange], ...]:
-    """The other modes of an elastic pipe that the range of operation includes."""
+    """What else winds of the site excite, see `frahm.loads.other_ranges`; nothing if the range was given."""
     return other_ranges(work.case) if work.range.moves else ()
 
 

@@ -72,24 +72,26 @@ def _over_the_winds(work: Work, curve: dict[str, Any], exists: bool) -> Section:
     ranges = [(work.system, work.range), *((build_system(case), within) for case, within in others_of(work))]
     exists = exists or any(_detached_count(*one, 1.0) for one in ranges[1:])
     free, taken, event = 1.0, math.nan, None
+
+    def having(force: float) -> list[tuple[System, OperatingRange]]:
+        return [one for one in ranges if _detached_count(*one, force)]
+
     if not exists:
         for force in _LADDER:
-            found_in = [one for one in ranges if _detached_count(*one, force)]
-            if found_in:
-                taken, ranges_there = force, found_in
+            if having(force):
+                taken = force
                 break
             free = force
         while math.isfinite(taken) and taken - free > _BIRTH * taken:
             middle = 0.5 * (free + taken)
-            there = [one for one in ranges if _detached_count(*one, middle)]
-            free, taken, ranges_there = (free, middle, there) if there else (middle, taken, ranges_there)
+            free, taken = (free, middle) if having(middle) else (middle, taken)
         most = taken if math.isfinite(taken) else free
         births = [event for one in ranges if (event := _next_birth(*one, most)) is not None]
         event = min(births, key=lambda one: one["force"], default=None)
         if event is not None:
             free = taken = event["force"]
         elif math.isfinite(taken):
-            event = _born(*ranges_there[0], taken)
+            event = _born(*having(taken)[0], taken)
     found: dict[str, Any] = {
         "exists": exists,
         "next_event": event,
@@ -105,9 +107,10 @@ def _next_birth(system: System, within: OperatingRange, most: float) -> dict[str
     force = 1.0
     while force < most:
         search = begin(with_parameters(system, force=force), *within.frequency, None, within.factor)
-        births = [force * factor for factor, _ in births_ahead(search)]
-        if births and births[0] < most:
-            return _born(system, within, births[0])
+        for factor, _ in births_ahead(search):
+            born = _born(system, within, force * factor) if force * factor < most else None
+            if born is not None:
+                return born
         force *= LOOKED_AHEAD
     return None
 

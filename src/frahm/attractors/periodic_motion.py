@@ -64,15 +64,12 @@ def _alone(system: System, W: float, within: OperatingRange, first: Floats, grow
     pipe, stroke = abs(complex(X @ system.output)), abs(complex(X @ first))
     state = frozen(np.column_stack([X.real, (1j * W * X).real]).ravel())
     sizes = (pipe, stroke, pipe / math.sqrt(2), stroke / math.sqrt(2))
-    alone = _periodic(system, W, sizes, state, growth, 1.0, (1.0, 1.0))
+    alone = _periodic(system, W, sizes, state, growth)
     return AttractorSet((alone,), W, alone.detuning, {}, 0, 0, 0, Outcome.DONE)
 
 
-def _periodic(
-    system: System, W: float, sizes: tuple[float, ...], state: Floats, growth: float, chance: float,
-    interval: tuple[float, float],
-) -> Attractor:  # fmt: skip
-    """A motion with the period of the excitation; `sizes` are peaks and rms of pipe and stroke [m]."""
+def _periodic(system: System, W: float, sizes: tuple[float, ...], state: Floats, growth: float) -> Attractor:
+    """The only motion, with the period of the excitation; `sizes` are peaks and rms of pipe and stroke [m]."""
     pipe, stroke, pipe_rms, stroke_rms = sizes
     return Attractor(
         kind="periodic", frequency=W, detuning=float(detuning_of(system, W)), pipe_peak=pipe, relative_peak=stroke,
@@ -80,6 +77,6 @@ def _periodic(
         relative_peak_expected_interval=(stroke, stroke), return_time=DURATION * 2 * math.pi / W,
         escape_rate=0.0, escape_interval=(0.0, 0.0), pipe_rms=pipe_rms, relative_rms=stroke_rms,
         envelope=(pipe, pipe), relative_envelope=(stroke, stroke), period_multiple=1, beat_period=math.nan,
-        frequencies=(W,), lyapunov=growth, lyapunov_interval=(growth, growth), basin_fraction=chance,
-        basin_interval=interval, representative_state=state, from_rest=False, outcome=Outcome.DONE,
+        frequencies=(W,), lyapunov=growth, lyapunov_interval=(growth, growth), basin_fraction=1.0,
+        basin_interval=(1.0, 1.0), representative_state=state, from_rest=False, outcome=Outcome.DONE,
     )  # fmt: skip

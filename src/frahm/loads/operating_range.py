@@ -28,7 +28,7 @@ from frahm.loads.vortex import vortex_shedding
 
 _KNOTS = 200  # of the lift over the frequency where a table bends it; a cubic between them is exact to about 1e-10
 _SAME = 1e-9  # relative difference below which an end of the range is an end of the site's winds
-_CALM, _STORM = 1e-3, 1e3  # times the winds of a range: no range is stretched beyond
+_CALM, _STORM = 1e-3, 1e3  # times the winds of a range: where a site has no bound nothing is stretched beyond
 _NEAR_ZERO = 0.5  # a window widened below zero frequency ends at this share of its lower end instead
 HALF = 0.5  # what a range is widened by when its worst is put to the test
 
@@ -157,7 +157,6 @@ class OperatingRange:
         inner = sorted(self.wind)
         least, most = (f(a, b) for f, a, b in zip((max, min), self.site, self.law.speed_range, strict=True))
         least = min(max(least, _CALM * inner[0]), inner[0])
-        # beyond twice the highest frequency asked about, or the last knot of a table, nothing turns that matters
         most = max(min(most, _STORM * inner[1]), inner[1])
         stretches = self.law.stretches(least, most)
         own = max(stretches, key=lambda one: min(max(one), inner[1]) - max(min(one), inner[0]))
@@ -311,9 +310,8 @@ def _over(
 def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
     law, (site, about_site) = wind_excitation(case), site_winds(case)
     bands, speed = excited_bands(case, most_mass_ratio), case.wind.speed
-    elsewhere = any(lo <= float(law.frequency(speed)) <= hi for lo, hi in bands[1:])
     reached = law.speed_range
-    basis = [_about_band(case, bands[0], elsewhere), about_site]
+    basis = [_about_band(case, bands[0], _excites_another(law, speed, bands)), about_site]
     if not all(law.speeds_of(W).size for W in bands[0]):
         basis.append(
             f"Strouhal number and lift are given for {reached[0]:.3g} ... {reached[1]:.3g} m/s only: nothing is known"
@@ -321,7 +319,7 @@ def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
         )
     ends = _winds_of(law, bands[0])
     doubts = _beyond_the_site(speed, ends, site)
-    lo, hi = _wanted(case, law, bands[0], elsewhere)
+    lo, hi = _wanted(case, law, bands)
     if doubts:  # none of these winds is one of the site: they are looked at as if they were
         site = (min(lo, site[0]), max(hi, site[1]))
     if not lo < hi * (1 - _SAME):
@@ -338,11 +336,16 @@ def _of_the_site(case: Case, most_mass_ratio: float) -> OperatingRange:
     return replace(found, doubts=doubts, band=bands[0])
 
 
-def _wanted(case: Case, law: WindExcitation, band: tuple[float, float], elsewhere: bool) -> tuple[float, float]:
+def _excites_another(law: WindExcitation, speed: float, bands: list[tuple[float, float]]) -> bool:
+    """Whether a wind [m/s] sheds in the band of another mode than the first [rad/s]."""
+    return any(lo <= float(law.frequency(speed)) <= hi for lo, hi in bands[1:])
+
+
+def _wanted(case: Case, law: WindExcitation, bands: list[tuple[float, float]]) -> tuple[float, float]:
     """Lowest and highest wind [m/s] that excites the governing mode; its design wind, unless it excites another one."""
     site, _ = site_winds(case)
-    ends, speed, reached = _winds_of(law, band), case.wind.speed, law.speed_range
-    wanted = ends if ends and elsewhere else [speed, *ends]
+    ends, speed, reached = _winds_of(law, bands[0]), case.wind.speed, law.speed_range
+    wanted = ends if ends and _excites_another(law, speed, bands) else [speed, *ends]
     if _beyond_the_site(speed, ends, site):
         site = (min(*wanted, site[0]), max(*wanted, site[1]))
     lo = max(min(wanted), min(site[0], speed), reached[0])
@@ -384,9 +387,7 @@ def other_ranges(case: Case, most_mass_ratio: float = 0.0) -> tuple[tuple[Case, 
         return ()
     law, (site, _) = wind_excitation(case), site_winds(case)
     main, bands = _of_the_site(case, most_mass_ratio), excited_bands(case, most_mass_ratio)
-    elsewhere = any(lo <= float(law.frequency(case.wind.speed)) <= hi for lo, hi in bands[1:])
-    winds = _wanted(case, law, bands[0], elsewhere)
-    found = []
+    winds, found = _wanted(case, law, bands), []
     if winds[0] < winds[1] * (1 - _SAME) and not law.is_monotone(*winds):
         stretches = [one for one in law.stretches(*winds) if not _overlap(one, main.wind)]
         found += [(case, part) for part in _ranges_of(case, law, bands[0], stretches, main.site)]

@@ -199,6 +199,19 @@ def test_a_detached_curve_that_merges_soon_after_its_birth_ends_the_margin():
     assert (found["exists"], found["next_event"]["change"]) == (False, "appears")
 
 
+def test_a_birth_of_no_detached_curve_does_not_hide_the_next(monkeypatch):
+    case = frahm.load_case(CASE.to_dict() | {"analysis": {}})
+    curve = {"special_points": [], "branches": []}
+    work = Work(case, Section(results={"response": {"harmonic-balance": curve}}, data={"response": None}))
+    monkeypatch.setattr(margin_module, "_detached_count", lambda system, within, force: 0)
+    monkeypatch.setattr(margin_module, "births_ahead", lambda search: [(1.1, 4.9), (1.2, 4.9)])
+    monkeypatch.setattr(
+        margin_module, "_born", lambda system, within, force: None if force < 1.15 else {"force": force}
+    )
+    found = detached_curve_margin(work).results["response"]["harmonic-balance"]["detached_curve_margin"]
+    assert found["force_margin"] == found["next_event"]["force"] == 1.2
+
+
 def test_no_margin_where_no_detached_curve_can_be():
     assert margin_at(with_absorbers(TUNED)) is None
     assert margin_at(CASE.with_wind(lift_coefficient=0)) is None
