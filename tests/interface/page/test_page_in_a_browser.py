@@ -45,10 +45,7 @@ def slow_curve(case):
 
 
 def shows(visitor, case):
-    """Whether the slow flow of a case is drawn: every point of Python's curve, and no other.
-
-    To 1e-7: beside a fold a rounding of the coefficients moves a point by its root.
-    """
+    """Whether the slow flow of a case is drawn: every point of Python's curve, to 1e-9, and no other."""
     curve, traces = slow_curve(case), visitor.lines()
     for stable, dash in ((True, "solid"), (False, "dash")):
         drawn, expected = points_of(traces, "slow flow", dash), expected_points(curve, stable)
@@ -60,7 +57,7 @@ def shows(visitor, case):
         distance = [np.min(np.max(np.abs(drawn - point) / (1e-12 + np.abs(point)), axis=1)) for point in expected]
         everything = np.concatenate([expected_points(curve, s) for s in (True, False) if np.any(curve.stable == s)])
         foreign = [np.min(np.max(np.abs(everything - p) / (1e-12 + np.abs(p)), axis=1)) for p in drawn]
-        if max(distance) > 1e-7 or max(foreign) > 1e-7:
+        if max(distance) > 1e-9 or max(foreign) > 1e-9:
             return False
     return True
 
