@@ -12,6 +12,7 @@ import frahm
 from attractors_attacked import Known, attack, label, missed
 from brute_force import ends, random_states
 from frahm.attractors.orbits import orbit_at, refined
+from frahm.attractors.regions import sample_region
 from frahm.attractors.settling import Settling
 from frahm.attractors.stroboscope import stroboscope
 from frahm.loads import frequency_range
@@ -92,3 +93,23 @@ def test_what_is_in_a_ball_settles_though_another_orbit_passes_through_large_one
     for ball in orbit.balls:
         states = ball.centre + ball.radius * steps @ np.linalg.inv(ball.root).T
         assert np.all(ball.distance(strobe.run(states, 23 * 40).states) < 0.1)
+
+
+def test_motions_that_have_not_arrived_at_a_torus_do_not_leave_it():
+    """One of ten motions passes near the boundary of an orbit's basin first: four of sixteen started on it end there."""
+    one = drawn(58)
+    strobe = stroboscope(one.system, one.frequency)
+    near = np.array([
+        -0.03012988128782353, 0.02094099438022754, -0.11099500115743657, 0.1192040319404814,
+        -0.07221044711379802, 0.04623747756091579, -0.07304548409089513, 0.03764163827392848,
+    ])  # fmt: skip
+    orbit = orbit_at(strobe, refined(strobe, near, 41)[0], 41)
+    bounds = {"x1": 1.1896234337731646, "v1": 0.8424753340066261, "z": 0.12480100454707986, "w": 0.08838239480259921}
+    region = {name: (-bound, bound) for name, bound in bounds.items()}
+    settling = Settling(strobe, 3000, [orbit])
+    settling.settle(sample_region(one.system, region, 200, 1)[140:150])
+    _, *tori = settling.known
+    assert tori
+    members = Oracle(one.system).watch(tori[-1].members[:, -1], one.frequency, 8000, 1).states
+    assert np.min(orbit.distance(members)) > 2
+    assert all(torus.left == 0 for torus in tori)

@@ -102,24 +102,33 @@ def _covers(here: Floats, there: Floats) -> bool:
 def confirmed(strobe: Stroboscope, strobes: Floats, orbits: Sequence[Orbit]) -> Cloud | None:
     """Cloud of the attractor a motion with these strobes (K, 2n) is on, or None if most motions started there leave."""
     starts = strobes[np.linspace(len(strobes) // 2, len(strobes) - 1, _STARTED).astype(int)]
-    stayed = strobe.run(starts, STAY)
-    alive = stayed.codes == 0
-    stretches, watched, states, good = _watched(strobe, np.where(alive[:, None], stayed.states, starts))
-    good &= alive
-    tree, scale, reach = _tree(strobes)
-    for orbit in orbits:
-        good &= ~orbit.contains(states)
+    stretches, watched, good = _kept(strobe, starts, orbits)
     left = int(np.count_nonzero(~good))
+    tree, scale, reach = _tree(strobes)
     good[good] = _share(tree, scale, reach, watched[good, -len(strobes) // 2 :]) >= BELONGS
     on = np.flatnonzero(good)[:MEMBERS]
     if len(on) < MEMBERS:
         return None
     members = frozen(watched[on])
+    if left:  # or never arrived: those that have stayed so long tell
+        states = members[:, :: WATCH * MEMBERS // _STARTED].reshape(_STARTED, -1)
+        left = int(np.count_nonzero(~_kept(strobe, states, orbits)[2]))
     tree, scale, _ = _tree(np.concatenate([strobes, members.reshape(-1, strobes.shape[1])]))
     return Cloud(
         frozen(scale), tree, _reach(strobes / scale, members / scale), members, frozen(stretches[on]),
         lyapunov(strobe, members[:, -1]), _STARTED * (STAY + WATCH), left,
     )  # fmt: skip
+
+
+def _kept(strobe: Stroboscope, starts: Floats, orbits: Sequence[Orbit]) -> tuple[Floats, Floats, np.ndarray]:
+    """What motions show in the end and their strobes, see `_watched`, and which are on none of the orbits, nor lost."""
+    stayed = strobe.run(starts, STAY)
+    alive = stayed.codes == 0
+    stretches, watched, states, good = _watched(strobe, np.where(alive[:, None], stayed.states, starts))
+    good &= alive
+    for orbit in orbits:
+        good &= ~orbit.contains(states)
+    return stretches, watched, good
 
 
 def peaks_of_long_motions(
