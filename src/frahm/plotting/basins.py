@@ -8,7 +8,7 @@ import numpy as np
 
 from frahm import readable
 from frahm.plotting.lines import MM
-from frahm.plotting.style import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILLION, new_figure
+from frahm.plotting.style import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILLION, legend_below, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -64,7 +64,7 @@ def basin_map_figure(data: xr.Dataset) -> Figure:
     axes.set(xlabel=BASIN_AXES[str(across)], ylabel=BASIN_AXES[str(up)])
     handles: list[Any] = [Patch(facecolor=e.colour, edgecolor=INK, linewidth=0.5, label=e.text) for e in entries]
     handles += axes.get_legend_handles_labels()[0]
-    figure.legend(handles=handles, loc="outside lower center", ncols=1)
+    legend_below(figure, 1, handles=handles)
     return figure
 
 

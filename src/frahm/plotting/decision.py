@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frahm.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, SKY, VERMILLION, new_figure
+from frahm.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, SKY, VERMILLION, legend_below, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -81,7 +81,7 @@ def decision_figure(lasting: xr.Dataset, marks: Marks) -> Figure:
         xlabel="wind speed U [m/s]" if over_wind else "detuning σ = Ω − ω [rad/s]",
         ylabel="largest lasting pipe displacement [mm]",
     )
-    figure.legend(loc="outside lower center", ncols=3)
+    legend_below(figure)
     return figure
 
 

@@ -12,7 +12,7 @@ from frahm.exchange import write_data
 from frahm.plotting.decision import DEVICE_LOOKS, DEVICES, Marks, decision_figure
 from frahm.plotting.lines import MM
 from frahm.plotting.static import response_figure
-from frahm.plotting.style import GREY, INK, VERMILLION, figure_style, new_figure, save_figure
+from frahm.plotting.style import GREY, INK, VERMILLION, figure_style, legend_below, new_figure, save_figure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -95,7 +95,7 @@ def frequency_error_figure(data: xr.Dataset) -> Figure:
     axes.set_yscale("log")
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
     axes.set(xlabel="error of the pipe's natural frequency [%], devices not retuned", ylabel="worst pipe peak [mm]")
-    figure.legend(loc="outside lower center", ncols=3)
+    legend_below(figure)
     return figure
 
 

@@ -15,7 +15,7 @@ from frahm.plotting.lines import (
     response_lines,
 )
 from frahm.plotting.plain import PlainFigure
-from frahm.plotting.style import BARE, UNSTABLE_DASHES, new_figure
+from frahm.plotting.style import BARE, UNSTABLE_DASHES, legend_below, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +35,7 @@ def over_wind_figure(curve: xr.Dataset, bare: xr.Dataset) -> Figure:
     top = max(largest_finite(data["pipe_peak"].values) for data in (curve, bare))
     axes.set(xlabel=SPEED_LABEL, ylabel=_PEAK_LABEL, ylim=(0, 1.08 * MM * top or 1.0))
     axes.margins(x=0)
-    figure.legend(loc="outside lower center", ncols=3)
+    legend_below(figure)
     return figure
 
 

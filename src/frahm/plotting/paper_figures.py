@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from frahm.arrays import Floats
 from frahm.plotting.lines import response_lines
 from frahm.plotting.panels import name_panels, panels
-from frahm.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, figure_style
+from frahm.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, figure_style, legend_below
 from frahm.response import ResponseCurve
 
 DETUNING_LABEL = r"detuning $\sigma$ [rad/s]"
@@ -77,9 +77,7 @@ def response_figure(
             panel.set(xlim=window, xlabel=DETUNING_LABEL, ylabel=label)
             panel.set_ylim(bottom=0)
         name_panels(axes, (f"pipe, {title}", "relative to the pipe"))
-        figure.legend(
-            handles=_response_handles(paper, averaged, motions), loc="outside lower center", ncols=4, columnspacing=1.4
-        )
+        legend_below(figure, 4, handles=_response_handles(paper, averaged, motions), columnspacing=1.4)
         return figure
 
 
@@ -99,10 +97,22 @@ def _draw_halo(panel: Axes, curve: ResponseCurve, quantity: str) -> None:
 def _draw_motions(panel: Axes, motions: Motions, quantity: str) -> None:
     peaks = getattr(motions, quantity)
     for modulated, look in ((False, _PERIODIC_LOOK), (True, _MODULATED_LOOK)):
-        chosen = motions.modulated == modulated
-        panel.plot(motions.detuning[chosen], peaks[chosen], linestyle="none", zorder=4, **look)
+        chosen = np.flatnonzero(motions.modulated == modulated)
+        places = np.stack([motions.detuning / np.ptp(motions.detuning), peaks / np.nanmax(peaks)], axis=1)[chosen]
+        shown = chosen[_spaced(places)]
+        panel.plot(motions.detuning[shown], peaks[shown], linestyle="none", zorder=4, **look)
 
 
+def _spaced(places: Floats) -> list[int]:
+    """Which of the places (N, 2) to keep so that none is nearer than `_APART` to another."""
+    kept: list[int] = []
+    for index, place in enumerate(places):
+        if not kept or np.min(np.hypot(*(places[kept] - place).T)) >= _APART:
+            kept.append(index)
+    return kept
+
+
+_APART = 0.025  # of a panel's width or height, at least, between motions drawn: lines under them stay seen
 _HALO_LOOK: dict[str, Any] = {"color": "#F3B98F", "linewidth": 4.5, "solid_capstyle": "butt"}
 _PERIODIC_LOOK: dict[str, Any] = {"marker": "o", "markersize": 2.8, "color": GREEN, "markeredgewidth": 0}
 _MODULATED_LOOK: dict[str, Any] = {

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from frahm.arrays import Floats
 from frahm.plotting.panels import name_panels, panels
-from frahm.plotting.style import BLUE, INK, VERMILLION, figure_style
+from frahm.plotting.style import BLUE, INK, VERMILLION, figure_style, legend_below
 
 _TIME_LABEL, _FREQUENCY_LABEL = "time [s]", "frequency [Hz]"
 _PIPE_LABEL, _RELATIVE_LABEL = "$x_1$ [m]", "$z$ [m]"
@@ -101,7 +101,7 @@ def spectra_figure(slow: Spectrum, exact: Spectrum, natural_hz: float, window: t
         name_panels(axes, ("pipe", "relative"))
         lines = axes[0, 0].get_lines()
         labels = ("slow flow of the paper", "exact equations, integrated", f"{natural_hz:g} Hz, natural frequency")
-        figure.legend(lines, labels, loc="outside lower center", ncols=3)
+        legend_below(figure, handles=lines, labels=labels)
         return figure
 
 

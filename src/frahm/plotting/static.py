@@ -27,7 +27,7 @@ from frahm.plotting.lines import (
     special_marks,
     thinned,
 )
-from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK, UNSTABLE_DASHES, decade_axis, new_figure
+from frahm.plotting.style import BARE, GREEN, INK, PIPE, SINK, UNSTABLE_DASHES, decade_axis, legend_below, new_figure
 from frahm.plotting.views import LABELS, SHOWN_HARMONICS, MotionView, manifold_height
 
 if TYPE_CHECKING:
@@ -90,7 +90,7 @@ def response_figure(
                 color=BARE, path_effects=[withStroke(linewidth=1.5, foreground="white")],
             )  # fmt: skip
     axes.set(xlabel=AXIS_LABELS[axis_of(curve)], ylabel=QUANTITY_LABELS[quantity], ylim=(0, MM * HEADROOM * top or 1.0))
-    figure.legend(loc="outside lower center", ncols=3)
+    legend_below(figure)
     return figure
 
 
@@ -126,7 +126,7 @@ def motion_figure(motion: MotionView) -> Figure:
         axes.xaxis.set_label_coords(0.5, -0.29)
         axes.yaxis.set_label_coords(-0.1, 0.5)
     handles = [*whole.get_legend_handles_labels()[0], *lines.get_legend_handles_labels()[0]]
-    figure.legend(handles=handles, loc="lower center", ncols=3)
+    legend_below(figure, loc="lower center", handles=handles)
     return figure
 
 

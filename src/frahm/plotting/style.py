@@ -62,6 +62,18 @@ def new_figure(width: float = 160.0, height: float = 90.0) -> Figure:
     return Figure(figsize=(width / _INCH, height / _INCH), layout="constrained")
 
 
+def legend_below(figure: Figure, columns: int = 3, *, loc: str = "outside lower center", **options: Any) -> None:
+    """Legend under the panels, in no more columns than the figure has room for."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    for count in range(columns, 0, -1):
+        legend = figure.legend(loc=loc, ncols=count, **options)
+        if count == 1 or legend.get_window_extent(renderer).width <= figure.bbox.width:
+            return
+        legend.remove()
+
+
 def save_figure(figure: Figure, stem: str | Path, *, narrow: bool = False) -> list[Path]:
     """Write `stem`.png and `stem`.svg, each complete or not at all; return their paths.
 
@@ -95,7 +107,7 @@ def _make_narrow(figure: Figure) -> None:
         handles = [handle for handle in legend.legend_handles if handle is not None]
         texts = [text.get_text() for text in legend.get_texts()]
         legend.remove()
-        figure.legend(handles, texts, loc="outside lower center", ncols=1)
+        legend_below(figure, 1, handles=handles, labels=texts)
         more += len(texts) - 1
     for axes in figure.axes:
         for axis in (axes.xaxis, axes.yaxis):

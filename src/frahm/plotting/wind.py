@@ -9,7 +9,7 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.plotting.interactive import plot_layout, single
 from frahm.plotting.plain import PlainFigure
-from frahm.plotting.style import BARE, INK, PIPE, SKY, new_figure
+from frahm.plotting.style import BARE, INK, PIPE, SKY, legend_below, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,7 +41,7 @@ def lock_in_figure(curve: xr.Dataset) -> Figure:
             at = np.broadcast_to(speed, open_ends.shape)[open_ends]
             axes.plot(at, curve[name].values[open_ends], "x", color=INK, markersize=4, label=f"{label}, not settled")
     axes.set(xlabel="wind speed [m/s]", ylabel="largest pipe displacement [m]", ylim=(0, None))
-    figure.legend(loc="outside lower center", ncols=2)
+    legend_below(figure, 2)
     return figure
 
 
@@ -64,7 +64,7 @@ def gusts_figure(motion: xr.Dataset) -> Figure:
         pipe.axhline(resonant, color=BARE, linestyle=":", linewidth=1.0, label=_STEADY_LABEL)
     pipe.set(xlabel="time [s]", ylabel="envelope of the pipe [m]", ylim=(0, None))
     pipe.margins(x=0.01)
-    figure.legend(loc="outside lower center", ncols=3)
+    legend_below(figure)
     return figure
 
 
