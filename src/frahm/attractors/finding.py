@@ -121,12 +121,17 @@ def attractors_from(
     seed: int,
     periods: int,
     unverified: tuple[str, ...] = (),
+    others: Sequence[Floats] = (),
 ) -> AttractorSet:
-    """Attractors where the periodic responses are known, and what of these is unverified."""
+    """Attractors where the periodic responses are known, and what of these is unverified.
+
+    Motions from the states `others` are followed as well; they do not count in a basin.
+    """
     system = strobe.system
     starts = sample_region(system, region, samples, seed) if samples else np.zeros((0, 2 * system.size))
     settling = begin_settling(strobe, responses, periods)
-    seeds = settling.settle(np.concatenate([seed_states(strobe, responses), starts[:_SCOUTS]]))
+    begun = [seed_states(strobe, responses), starts[:_SCOUTS], *(state[None] for state in others)]
+    seeds = settling.settle(np.concatenate(begun))
     settled = settling.settle(starts, resume=not seeds.interrupted)
     rest = settling.settle(np.zeros((1, 2 * system.size)), resume=not settled.interrupted)
     counted = np.array([outcome is not Outcome.INTERRUPTED for outcome in settled.outcomes], dtype=bool)

@@ -136,10 +136,12 @@ def orbit_at(strobe: Stroboscope, state: Floats, multiple: int = 1) -> Orbit | N
     if not all(spectral_radius(Phi) < 1 for Phi in maps):
         return None
     size = orbit_size(strobe, centres)
-    balls = tuple(_ball(strobe, centre, Phi, size, multiple) for centre, Phi in zip(centres, maps, strict=True))
+    balls: list[Ball] = []
+    for centre, Phi in zip(centres, maps, strict=True):
+        balls.append(_ball(strobe, centre, Phi, size, multiple, balls[-1] if balls else None))
     multipliers = eigenvalues(maps[0])
     multipliers = multipliers[np.argsort(-np.abs(multipliers))]
-    return Orbit(frozen(centres), balls, frozen(multipliers, complex))
+    return Orbit(frozen(centres), tuple(balls), frozen(multipliers, complex))
 
 
 def spectral_radius(Phi: Floats) -> float:
@@ -257,8 +259,10 @@ def _slopes(system: System, x: Floats, v: Floats) -> Floats:
     return A
 
 
-def _ball(strobe: Stroboscope, centre: Floats, Phi: Floats, size: Floats, multiple: int) -> Ball:
-    """Ball as large as the sampled shells allow, found by doubling or halving its radius."""
+def _ball(
+    strobe: Stroboscope, centre: Floats, Phi: Floats, size: Floats, multiple: int, before: Ball | None = None
+) -> Ball:
+    """Ball as large as the sampled shells allow, found by growing or shrinking it from the one `before`, if any."""
     rho = spectral_radius(Phi)
     turns = int(np.clip(np.ceil(_PATIENCE / (1 - rho)), 1, _MOST_TURNS))
     limit = 1 - _MARGIN * (1 - rho**turns)
@@ -287,12 +291,13 @@ def _ball(strobe: Stroboscope, centre: Floats, Phi: Floats, size: Floats, multip
         off = np.max(np.linalg.norm((moved - states @ turned.T) @ root.T, axis=1))
         return bool(shrinks), bool(shrinks and off <= spare * radius)
 
-    shrinks, sure = shell(_FIRST)
-    largest = _FIRST if shrinks else 0.0
+    first = _FIRST if before is None or not before.verified else min(_RATIO * before.radius, _FIRST)
+    shrinks, sure = shell(first)
+    largest = first if shrinks else 0.0
     while 0 < largest < _LARGEST and shell(_RATIO * largest)[0]:
         largest *= _RATIO
     # another attractor inside draws states of a large shell inwards too: the smaller ones tell
-    radius = _FIRST
+    radius = first
     while not sure and radius > _SMALLEST:
         radius /= _RATIO
         shrinks, sure = shell(radius)

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm.arrays import Floats
 from frahm.attractors.attractor import Attractor, AttractorSet
+from frahm.attractors.bracketing import FINE, bracket, largest, pipe_size, rms_size, stroke_size
 from frahm.attractors.doubts import Place, doubts_of, frequencies_beyond
 from frahm.attractors.finding import MOST_SAMPLES, attractors_from, settling_periods
 from frahm.attractors.periodic_motion import linear_motions
 from frahm.attractors.regions import Region, checked_region, region_for
-from frahm.attractors.stroboscope import stroboscope
+from frahm.attractors.stroboscope import Stroboscope, stroboscope
 from frahm.attractors.worst_motion import WorstMotion, joined
 from frahm.case import load_case
 from frahm.errors import Outcome, ParameterError, check_count, check_number
@@ -33,12 +35,8 @@ _SPREAD, _BAND = 9, 0.55  # frequencies spread over the range: at least so many,
 _SPECIAL = 10  # special points of the response curve looked at on both sides, the largest first
 BESIDE = 5e-4  # how far beside a special point, of the frequency: nearer to it motions hardly settle
 _CLOSE = 8e-5  # frequencies nearer than this are one
-_FINE = 3.3e-4  # how near its neighbours the worst is looked at in the end
-_ROUNDS = 12
 
 UNMOVED_TIER = "nothing excites the pipe: the lift is zero"
-
-Size = Callable[[Attractor], float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,33 +233,33 @@ def worst_over(
     curve, responses_at = _curve(system, wide)
     at = driven_at(system, wide)
     surveys: dict[float, AttractorSet] = {}
-    sizes = (_pipe, _relative, _rms) if rms else (_pipe, _relative)
+    sizes = (pipe_size, stroke_size, rms_size) if rms else (pipe_size, stroke_size)
     lo, hi, _ = searched_window(system, *within.frequency)  # the sentence stands among those of the curve
     if is_linear(system) or not np.any(system.forcing):
         return _concluded(system, within, wide, curve, linear_motions(system, curve, within), min_basin, (), ())
     box = region or _region_of(system, curve, lo, hi)
 
-    def survey(W: float) -> AttractorSet:
-        responses = responses_at(W)
-        followed = settling_periods(system, W) if periods is None else periods
-        return attractors_from(stroboscope(at(W), W, workers), responses, box, samples, seed, followed)
+    def survey(W: float, others: Sequence[Floats] = ()) -> AttractorSet:
+        responses, followed = responses_at(W), periods or settling_periods(system, W)
+        return attractors_from(strobe(W), responses, box, samples, seed, followed, others=others)
 
-    def look(W: float) -> None:
-        surveys[W] = survey(W)
+    def strobe(W: float) -> Stroboscope:
+        return stroboscope(at(W), W, workers)
 
     doubts: list[str] = []
     beyond: list[Place] = []
+    bracketed = False
     try:
         for W in _first_frequencies(curve, lo, hi, beside):
-            look(W)
-        _refine(surveys, look, min_basin, sizes)
+            surveys[W] = survey(W)
+        bracketed = bracket(surveys, survey, strobe, min_basin, sizes)
         for W in frequencies_beyond(curve, lo, hi):
-            beyond.append((W, _largest({W: survey(W)}, _pipe, min_basin)[1].pipe_peak))
+            beyond.append((W, largest({W: survey(W)}, pipe_size, min_basin)[1].pipe_peak))
     except KeyboardInterrupt:
         if not surveys:
             raise
         doubts.append(Outcome.INTERRUPTED.value)
-    if any(_gaps(surveys, W) for W in {_largest(surveys, size, min_basin)[0] for size in sizes}):
+    if not bracketed:
         doubts.append("The frequency of the worst was not bracketed to 0.03 %.")
     return _concluded(system, within, wide, curve, surveys, min_basin, tuple(doubts), beyond, "attractor search")
 
@@ -271,18 +269,6 @@ def driven_at(system: System, within: OperatingRange) -> Callable[[float], Syste
     if not within.over_wind:
         return lambda W: system
     return lambda W: with_parameters(system, force=within.lift_factor(W))
-
-
-def _pipe(attractor: Attractor) -> float:
-    return attractor.pipe_peak
-
-
-def _relative(attractor: Attractor) -> float:
-    return attractor.relative_peak
-
-
-def _rms(attractor: Attractor) -> float:
-    return attractor.pipe_rms
 
 
 def _curve(system: System, within: OperatingRange) -> tuple[ResponseCurve, Callable[[float], list[PeriodicResponse]]]:
@@ -320,54 +306,18 @@ def _first_frequencies(curve: ResponseCurve, lo: float, hi: float, beside: float
     return sorted(chosen)
 
 
-def _refine(
-    surveys: dict[float, AttractorSet], look: Callable[[float], None], min_basin: float, sizes: tuple[Size, ...]
-) -> None:
-    """Halve the gaps beside the worst until they are fine."""
-    for _ in range(_ROUNDS):
-        middles = {middle for size in sizes for middle in _gaps(surveys, _largest(surveys, size, min_basin)[0])}
-        if not middles:
-            return
-        for W in sorted(middles):
-            look(W)
-
-
-def _gaps(surveys: Iterable[float], worst: float) -> list[float]:
-    """Middles of the gaps beside the worst that are not fine."""
-    grid = sorted(surveys)
-    at = grid.index(worst)
-    return [
-        0.5 * (worst + grid[other])
-        for other in (at - 1, at + 1)
-        if 0 <= other < len(grid) and abs(grid[other] - worst) > _FINE * worst
-    ]
-
-
-def _largest(surveys: dict[float, AttractorSet], size: Size, min_basin: float) -> tuple[float, Attractor]:
-    """Frequency and attractor of the largest motion that counts."""
-    counting = [
-        (W, attractor)
-        for W in sorted(surveys)
-        for attractor in surveys[W]
-        if not attractor.basin_fraction < min_basin and not np.isnan(size(attractor))
-    ]
-    if not counting:
-        counting = [(W, attractor) for W in sorted(surveys) for attractor in surveys[W]]
-    return max(counting, key=lambda item: size(item[1]))
-
-
 def _concluded(
     system: System, within: OperatingRange, wide: OperatingRange, curve: ResponseCurve,
     surveys: dict[float, AttractorSet], min_basin: float, doubts: tuple[str, ...], beyond: Sequence[Place],
     tier: str = "exact linear response",
 ) -> WorstCase:  # fmt: skip
-    W, worst = _largest(surveys, _pipe, min_basin)
-    W_relative, stroke = _largest(surveys, _relative, min_basin)
-    W_rms, loudest = _largest(surveys, _rms, min_basin)
+    W, worst = largest(surveys, pipe_size, min_basin)
+    W_relative, stroke = largest(surveys, stroke_size, min_basin)
+    W_rms, loudest = largest(surveys, rms_size, min_basin)
     moved = worst.pipe_peak > 0  # where nothing excites the pipe no wind is worse than another
     found, ends = [*within.doubts, *curve.unverified], dict[str, float]()
     if moved:
-        found, ends = doubts_of(within, wide, curve, surveys, (W, worst), min_basin, beyond, _FINE)
+        found, ends = doubts_of(within, wide, curve, surveys, (W, worst), min_basin, beyond, FINE)
     possible = [a.pipe_peak for s in surveys.values() for a in s if a.basin_interval[1] >= min_basin]
     motion = WorstMotion(
         pipe_peak=worst.pipe_peak,

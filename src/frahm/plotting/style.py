@@ -62,7 +62,7 @@ def new_figure(width: float = 160.0, height: float = 90.0) -> Figure:
     return Figure(figsize=(width / _INCH, height / _INCH), layout="constrained")
 
 
-def legend_below(figure: Figure, columns: int = 3, *, loc: str = "outside lower center", **options: Any) -> None:
+def legend_below(figure: Figure, columns: int = 3, *, loc: Any = "outside lower center", **options: Any) -> None:
     """Legend under the panels, in no more columns than the figure has room for."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
