@@ -8,14 +8,15 @@ import datetime
 import itertools
 import re
 from array import array
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TextIO
+from typing import TextIO, TypeVar
 
 import numpy as np
 
 from frahm.errors import ParameterError
+from frahm.tables.cells import Cells
 from frahm.tables.table import Table
 from frahm.units import is_unit
 
@@ -28,6 +29,7 @@ _NUMBER = re.compile(
 )
 _DATE = re.compile(r"\d{4}-\d\d-\d\d(?:[T ]\d\d:\d\d.*)?", re.ASCII)
 _HEAD = re.compile(r"([^\[\]()]*?)\s*(?:[\[(]\s*([^\[\]()]*?)\s*[\])])?")
+Read = TypeVar("Read")
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)  # a line that spreadsheets write above the table
 
 
@@ -37,10 +39,20 @@ def text_table(path: Path, label: str, largest: int) -> Table:
     Names and units stand in one line (``x [mm]``), in two, or nowhere. Numbers have a decimal point or, where the
     columns are not apart by commas, a decimal comma. A column of ISO dates becomes seconds since the first one.
     """
+    return _decoded(path, label, lambda lines: _Reader(label, lines).read())
+
+
+def text_cells(path: Path, label: str, largest: int) -> Cells:
+    """Cells of a text file as they stand, columns apart by comma, semicolon, tab or blanks."""
+    return _decoded(path, label, lambda lines: _Reader(label, lines).cells())
+
+
+def _decoded(path: Path, label: str, read: Callable[[Iterator[tuple[int, str]]], Read]) -> Read:
+    """What is read of the lines of a file, in the first encoding that fits."""
     for encoding in _encodings(path):
         try:
             with path.open(encoding=encoding) as stream:
-                return _Reader(label, _numbered(stream, label)).read()
+                return read(_numbered(stream, label))
         except UnicodeDecodeError:
             continue
         except OSError as error:
@@ -84,11 +96,7 @@ class _Reader:
 
     def read(self) -> Table:
         """Read all lines."""
-        sample = list(itertools.islice(self.lines, _SAMPLE))
-        if sample and (asked := _SEPARATOR.fullmatch(sample[0][1])):
-            self.delimiter, sample = asked[1], sample[1:]
-        else:
-            self.delimiter = _delimiter([line for _, line in sample])
+        sample = self._sample()
         rest = sample[self._read_heads(sample) :]
         numbers, places = array("d"), array("q")
         for number, line in itertools.chain(rest, self.lines):
@@ -102,20 +110,35 @@ class _Reader:
             {i: start.isoformat() for i, start in self.starts.items()},
         )  # fmt: skip
 
+    def cells(self) -> Cells:
+        """Read all lines as cells of text."""
+        sample, lines, rows = self._sample(), [], []
+        for number, line in itertools.chain(sample, self.lines):
+            lines.append(number)
+            rows.append(tuple(self._cells(number, line)))
+        return Cells(self.label, tuple(lines), tuple(rows), comma_is_decimal=self.delimiter != ",")
+
+    def _sample(self) -> list[tuple[int, str]]:
+        """The first lines, and with them what stands between the columns."""
+        sample = list(itertools.islice(self.lines, _SAMPLE))
+        if sample and (asked := _SEPARATOR.fullmatch(sample[0][1])):
+            self.delimiter, sample = asked[1], sample[1:]
+        else:
+            self.delimiter = _delimiter([line for _, line in sample])
+        return sample
+
     def _read_heads(self, sample: Sequence[tuple[int, str]]) -> int:
         """Take names and units from the first lines; return how many of them there are."""
         rows = [self._cells(*entry) for entry in sample[:3]]
         if not rows:
             return 0
-        count = 0 if any(map(_is_number, rows[0])) else 1 + (len(rows) > 1 and _are_units(rows[1]))
+        count = 0 if any(map(_is_number, rows[0])) else 1 + (len(rows) > 1 and are_units(rows[1]))
         first = rows[count] if count < len(rows) else rows[0]
         head = rows[0] if count else [""] * len(first)
         width = max(len(head), 1)
         while width > 1 and not head[width - 1] and not "".join(first[width - 1 :]):
             width -= 1  # a delimiter at the end of the line
-        found = [_HEAD.fullmatch(cell) for cell in head[:width]]
-        self.heads = [match[1] if match else cell for match, cell in zip(found, head, strict=False)]
-        self.units = [(match[2] or "") if match else "" for match in found]
+        self.heads, self.units = map(list, zip(*map(name_and_unit, head[:width]), strict=True))
         if count == 2:
             second = [cell.strip("[]() ") for cell in rows[1]] + [""] * width
             self.units = [unit or second[i] for i, unit in enumerate(self.units)]
@@ -205,11 +228,25 @@ def _delimiter(lines: Sequence[str]) -> str:
     return " " if rows and all(len(row) > 1 and all(map(_NUMBER.fullmatch, row)) for row in rows[-1:]) else found
 
 
+def name_and_unit(head: str) -> tuple[str, str]:
+    """Name and unit of a head such as ``length [m]`` or ``length (m)``; the unit is empty where it names none."""
+    match = _HEAD.fullmatch(head)
+    return (match[1], match[2] or "") if match else (head, "")
+
+
+def number_of(cell: str, *, comma: bool) -> float | None:
+    """Number of a cell of text, `comma` saying whether a comma may be its decimal sign; None if it is none."""
+    text = cell.replace(_MINUS, "-")
+    if not _NUMBER.fullmatch(text) or ("," in text and not comma):
+        return None
+    return float(text.replace(",", "."))
+
+
 def _is_number(cell: str) -> bool:
     return bool(_NUMBER.fullmatch(cell.replace(_MINUS, "-")) or _DATE.fullmatch(cell))
 
 
-def _are_units(cells: Sequence[str]) -> bool:
+def are_units(cells: Sequence[str]) -> bool:
     """Whether a second line says the units: each is one, nothing, or in brackets."""
     said = [cell for cell in cells if cell not in ("", "-", "1")]
     return bool(said) and all(cell[0] + cell[-1] in ("[]", "()") or is_unit(cell) for cell in said)

@@ -1,7 +1,7 @@
 """Binary files that anybody may have written, parsed in a process of their own with bounds on memory and time.
 
 The libraries that read MAT and HDF5 files are native code: a damaged file can end the process that reads it, and a
-small one can ask for any amount of memory. What comes back from the other process is plain: text, numbers, and arrays
+small one, or a small workbook, can ask for any amount of memory. What comes back from the other process is plain: text, numbers, and arrays
 as raw bytes, nothing that could be executed.
 """
 
@@ -22,7 +22,7 @@ MOST_BYTES = 500_000_000  # of all arrays in a file together
 _SECONDS = 60.0
 _CHILD = str(Path(__file__).with_name("child.py"))
 _BASE = 2**30  # address space for the interpreter and the libraries themselves [bytes]
-_KINDS = {"mat": "a MAT file of version 5", "netcdf": "a netCDF file"}
+_KINDS = {"mat": "a MAT file of version 5", "netcdf": "a netCDF file", "xlsx": "a workbook (.xlsx)"}
 
 
 def binary_content(kind: str, path: Path, *, most_bytes: int = MOST_BYTES) -> dict[str, Any]:
@@ -30,8 +30,8 @@ def binary_content(kind: str, path: Path, *, most_bytes: int = MOST_BYTES) -> di
 
     Parameters
     ----------
-    kind : {"mat", "netcdf"}
-        MAT of version 4 to 7; netCDF 3 or 4.
+    kind : {"mat", "netcdf", "xlsx"}
+        MAT of version 4 to 7; netCDF 3 or 4; a workbook.
     path : Path
         The file.
     most_bytes : int
@@ -42,6 +42,8 @@ def binary_content(kind: str, path: Path, *, most_bytes: int = MOST_BYTES) -> di
     dict
         MAT: variables by name: arrays, text, lists for cells, dictionaries for structs, None for anything else.
         netCDF: "attrs" and "variables", each with "dims", "attrs" and "data", nothing decoded.
+        Workbook: "sheet", the name of the first visible one that holds any cells, its "rows", text and numbers, and
+        the "lines" they stand in, from 1.
 
     Raises
     ------

@@ -14,6 +14,9 @@ _BLOCK = 1 << 20
 _HEAD = 128  # bytes before the first element of a MAT file of version 5
 _COMPRESSED = 15
 _DAMAGED = "It is damaged."
+_COMPOUND = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"  # what files of the old kind, and encrypted ones, begin with
+_MOST_ENTRIES, _MOST_ROWS, _WIDEST, _LONGEST, _HUGE = 2000, 20_000, 200, 1000, 1e300
+_LAST_LINE = 1_048_576
 
 
 class RefusedError(Exception):
@@ -54,7 +57,7 @@ def main() -> None:
     _bound(int(memory), float(seconds))
     message, most = Message(), int(most_bytes)
     try:
-        content = {"mat": _mat, "netcdf": _netcdf}[kind](path, most, message)
+        content = {"mat": _mat, "netcdf": _netcdf, "xlsx": _xlsx}[kind](path, most, message)
         message.send(stream, {"content": ["mapping", content]}, most // 4)
     except RefusedError as refused:
         Message().send(stream, {"problem": str(refused)})
@@ -233,6 +236,63 @@ def _attribute(value: Any, message: Message) -> Any:
         return message.array(array)
     entries = [_text(entry) for entry in array.reshape(-1).tolist()]
     return ["list", entries] if array.ndim else entries[0]
+
+
+# --- workbooks ------------------------------------------------------------------------------------------------------
+
+
+def _xlsx(path: str, most_bytes: int, message: Message) -> dict[str, Any]:
+    _check_packed(path, most_bytes)
+    import openpyxl
+
+    with _library():
+        book = openpyxl.load_workbook(path, read_only=True, data_only=True, keep_links=False)
+        for sheet in book.worksheets:
+            if sheet.sheet_state != "visible":
+                continue
+            sheet.reset_dimensions()  # what a file says of its own size need not be true
+            lines, rows = _rows(sheet)
+            if rows:
+                return {"sheet": str(sheet.title), "lines": ["list", lines], "rows": ["list", rows]}
+    raise RefusedError("It has no sheet with anything in it.")
+
+
+def _check_packed(path: str, most_bytes: int) -> None:
+    """Refuse a workbook that is encrypted, damaged, or unpacks to more than it may."""
+    import zipfile
+
+    with _library(), open(path, "rb") as file:
+        if file.read(8) == _COMPOUND:
+            raise RefusedError("It is protected by a password, or of the old kind .xls: save it as .xlsx without one.")
+        with zipfile.ZipFile(file) as packed:
+            entries = packed.infolist()
+            # No more than the size stated is ever unpacked.
+            if len(entries) > _MOST_ENTRIES or sum(entry.file_size for entry in entries) > most_bytes:
+                raise RefusedError(f"Unpacked it is larger than {most_bytes // 1_000_000} MB.")
+
+
+def _rows(sheet: Any) -> tuple[list[int], list[Any]]:
+    """Rows with something in them, without the empty cells at their end, and where they stand."""
+    lines, rows = [], []
+    for number, row in enumerate(sheet.iter_rows(values_only=True), start=1):
+        cells = [_cell(value) for value in row[:_WIDEST]]
+        while cells and cells[-1] == "":
+            cells.pop()
+        if cells:
+            lines.append(number)
+            rows.append(["list", cells])
+        if len(rows) > _MOST_ROWS or number > _LAST_LINE:
+            raise RefusedError(f"It has more than {_MOST_ROWS} rows, or one beyond the last a sheet can have.")
+    return lines, rows
+
+
+def _cell(value: Any) -> Any:
+    """A number, or text without blanks around it."""
+    if value is None:
+        return ""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value) if abs(value) < _HUGE else str(value)[:_LONGEST]
+    return str(value).strip()[:_LONGEST]
 
 
 def _text(value: Any) -> str:
