@@ -1,6 +1,17 @@
 """Room `analysis`: one case through every step that tells something about it, stored and read back."""
 
-from frahm.analysis.analysis import STEPS, Analysis, Progress, Step, analyse, defaulted_fields, provenance, step_weights
+from frahm.analysis.analysis import (
+    STEPS,
+    Analysis,
+    Progress,
+    Step,
+    analyse,
+    defaulted_fields,
+    plain,
+    provenance,
+    step_weights,
+)
+from frahm.analysis.linear import bare_motions
 from frahm.analysis.margin import FORCE_MARGIN, margin_sentence
 from frahm.analysis.section import Check, Section, Work
 from frahm.analysis.store import load_analysis, read_summary, save_analysis
@@ -15,9 +26,11 @@ __all__ = [
     "Step",
     "Work",
     "analyse",
+    "bare_motions",
     "defaulted_fields",
     "load_analysis",
     "margin_sentence",
+    "plain",
     "provenance",
     "read_summary",
     "save_analysis",

@@ -108,10 +108,18 @@ def without_absorber(work: Work) -> Section:
 
 def bare_worst(work: Work) -> WorstMotion:
     """Worst motion without absorbers over the range of operation, every mode that winds of the site excite included."""
-    case = work.case.without_absorbers()
-    parts = [(case, work.range), *((c.without_absorbers(), part) for c, part in others_of(work))]
-    return joined([with_stress(c, worst_over(build_system(c), part, samples=1, min_basin=0.0, seed=1))
-                   for c, part in parts])  # fmt: skip
+    return joined([motion for _, motion in bare_motions(work)])
+
+
+def bare_motions(work: Work) -> list[tuple[Case, WorstMotion]]:
+    """Worst motion without absorbers in the range of operation, and in each other range that winds of the site excite.
+
+    Each with the case whose governing mode the lift is in step with.
+    """
+    parts = [(work.case, work.range), *others_of(work)]
+    bare = [(case.without_absorbers() if case.absorbers else case, part) for case, part in parts]
+    return [(case, with_stress(case, worst_over(build_system(case), part, samples=1, min_basin=0.0, seed=1)))
+            for case, part in bare]  # fmt: skip
 
 
 def others_of(work: Work) -> tuple[tuple[Case, OperatingRange], ...]:

@@ -114,7 +114,7 @@ def damage_beside(
     resonances = [] if bare is None else [speed for speed, _ in bare.resonances(*band)]
     if is_linear(build_system(case)) or bare is None:
         edges = first_edges(*band, count, resonances)
-        return _result(survey, bare, linear_pipe(case), climate, edges, others)
+        return _result(survey, bare, linear_pipe(case) if case.absorbers else bare, climate, edges, others)
     survey, edges = surveyed(survey, climate, band, count, resonances)
     return _result(survey, bare, None, climate, edges, others)
 
@@ -203,6 +203,7 @@ def _result(
     T, lock_in = climate.duration, _lock_in(case, edges)
     held = float(np.asarray(climate.probability(*lock_in)))
     without, range_without = _closed_form(bare, bare_detail, climate, edges)
+    held_without = _locked_in(bare, bare_detail, climate, edges, held)
     none = np.zeros(speeds.size)
     binning = 0.0
     if survey.at:
@@ -219,9 +220,9 @@ def _result(
         binning = abs(between - total) / total if 0 < total < math.inf else 0.0
         locked = T * held * float(np.max(rates, initial=0.0))
     else:
-        bin_with, ranges = _closed_form(linear, detail, climate, edges)
+        bin_with, ranges = (without, range_without) if linear is bare else _closed_form(linear, detail, climate, edges)
         bin_weighted, number, unsettled, kinds = bin_with, none + 1, none, ("linear",) * speeds.size
-        locked = _locked_in(linear, detail, climate, edges, held)
+        locked = held_without if linear is bare else _locked_in(linear, detail, climate, edges, held)
     growth = case.pipe.damping_ratio * case.pipe.frequency
     counted_winds = [(float(edges[0]), float(edges[-1])), *others]
     outside, worst_outside = _outside(bare, bare_detail, climate, counted_winds)
@@ -230,7 +231,7 @@ def _result(
         damage_with_weighted=float(np.sum(bin_weighted)),
         damage_without=float(np.sum(without)),
         locked_in_with=locked,
-        locked_in_without=_locked_in(bare, bare_detail, climate, edges, held),
+        locked_in_without=held_without,
         outside_without=outside, outside_wind=worst_outside,
         speeds=frozen(speeds), lower=frozen(edges[:-1]), upper=frozen(edges[1:]),
         frequencies=frozen(excitation.frequency(speeds)),

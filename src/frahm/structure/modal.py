@@ -111,6 +111,12 @@ class ModalPipe:
         where = self.most_stressed if section is None else section
         return self.shapes.stress_per_displacement(where)[list(self.order)]
 
+    def stresses(self, sections: Floats) -> Floats:
+        """Bending stress at sections [m] per modal displacement [Pa/m], shape (sections, n), as `stress` of each."""
+        if isinstance(self.shapes, BeamModes):
+            return self.shapes.stress_per_displacement(sections)[:, list(self.order)]
+        return np.array([self.stress(float(section)) for section in sections])
+
     @property
     def most_stressed(self) -> float:
         """Section where the governing mode alone causes the largest stress [m]."""
