@@ -8,6 +8,7 @@ from frahm.assessment.device_row import device_row
 from frahm.assessment.fatigue import fatigue_damage
 from frahm.assessment.rainflow_cycles import CONVENTION, Cycles, rainflow_cycles, turning_points
 from frahm.assessment.spring_fatigue import transverse_spring_cycles
+from frahm.assessment.verdict import doubts_of_the_rest
 from frahm.assessment.worst_stress import stress_places, with_stress
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "damage_of_modes",
     "device_row",
     "doubts_of_modes",
+    "doubts_of_the_rest",
     "fatigue_damage",
     "headline",
     "nothing_to_judge",

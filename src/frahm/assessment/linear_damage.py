@@ -45,12 +45,16 @@ class LinearPipe:
         """Hot-spot stress range [Pa] of the steady motion at wind speeds, shape (s,)."""
         X = linear_response(self.system, self.excitation.frequency(speed))
         scale = self.excitation.lift(speed) / self.reference_lift
-        return np.asarray(2 * detail.factor * np.abs(X @ detail.row) * scale)
+        stress = np.einsum("pn,n->p", X, detail.row)  # a product of matrices would wake threads for nothing
+        return np.asarray(2 * detail.factor * np.abs(stress) * scale)
 
     def rate(self, speed: Floats, detail: Detail) -> Floats:
         """Damage per time [1/s], one cycle per period: Omega/(2 pi N(S)), shape (s,)."""
-        S = self.stress_range(speed, detail)
-        return np.asarray(self.excitation.frequency(speed) / (2 * np.pi) / detail.curve.cycles(S))
+        return self.rate_of(self.stress_range(speed, detail), speed, detail)
+
+    def rate_of(self, stress_range: Floats, speed: Floats, detail: Detail) -> Floats:
+        """The same of stress ranges [Pa] that are known, shape (s,)."""
+        return np.asarray(self.excitation.frequency(speed) / (2 * np.pi) / detail.curve.cycles(stress_range))
 
     def resonances(self, low: float, high: float) -> list[tuple[float, float]]:
         """Winds between `low` and `high` that shed at a natural frequency, and half the width of the peak [m/s]."""
@@ -89,13 +93,13 @@ def linear_damage(pipe: LinearPipe, detail: Detail, climate: WindClimate, edges:
     half = 0.5 * np.diff(panels)
     speeds = (panels[:-1] + half)[:, None] + half[:, None] * _GAUSS[0]
     flat = speeds.ravel()
-    rates = pipe.rate(flat, detail).reshape(speeds.shape)
-    parts = climate.duration * half * ((climate.density(flat).reshape(speeds.shape) * rates) @ _GAUSS[1])
-    ranges = pipe.stress_range(flat, detail).reshape(speeds.shape)
+    ranges = pipe.stress_range(flat, detail)
+    rates = pipe.rate_of(ranges, flat, detail).reshape(speeds.shape)
+    parts = climate.duration * half * np.sum(climate.density(flat).reshape(speeds.shape) * rates * _GAUSS[1], axis=1)
     bins = np.searchsorted(edges, panels[:-1] + half) - 1
     damage, largest = np.zeros(edges.size - 1), np.zeros(edges.size - 1)
     np.add.at(damage, bins, parts)
-    np.maximum.at(largest, bins, ranges.max(axis=1))
+    np.maximum.at(largest, bins, ranges.reshape(speeds.shape).max(axis=1))
     return damage, largest
 
 

@@ -12,6 +12,7 @@ from frahm.cli.design import design
 from frahm.cli.guarded import GuardedGroup, told_if_full
 from frahm.cli.page import page
 from frahm.cli.reproduce import reproduce
+from frahm.cli.screen import screen
 from frahm.cli.sweep import sweep
 from frahm.cli.terminal import printable_streams
 
@@ -36,6 +37,7 @@ for command in (
     run.show,
     run.warmup,
     design,
+    screen,
     sweep,
     reproduce,
 ):

@@ -19,7 +19,9 @@ def check(case: CaseArgument) -> None:
 
 
 def new(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="File to write, ending in .yaml or .yml.")],
+    file: Annotated[
+        Path, typer.Argument(metavar="FILE", help="File to write, ending in .yaml or .yml; of members in .csv or .xlsx.")
+    ],
     kind: Annotated[
         str | None,
         typer.Option(
@@ -29,12 +31,18 @@ def new(
     study: Annotated[
         bool, typer.Option("--study", help="Write a small study for frahm sweep; it runs within a minute.")
     ] = False,
+    members: Annotated[
+        bool, typer.Option("--members", help="Write a table of members for frahm screen, as CSV or XLSX.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
 ) -> None:
-    """Write a commented case file, or a study, to start from."""
+    """Write a commented case file, a study, or a table of members, to start from."""
     from frahm.errors import ParameterError, check_choice
     from frahm.files import write_text
 
+    if members:
+        _new_members(file, study or kind is not None, force)
+        return
     if study and kind is not None:
         raise ParameterError("--kind", kind, "nothing beside --study, whose case is a built-in one or a file")
     if file.suffix.lower() not in (".yaml", ".yml"):
@@ -42,9 +50,7 @@ def new(
     from frahm.case import TEMPLATE_KINDS, template_text
 
     template = check_choice("--kind", "mode" if kind is None else kind, TEMPLATE_KINDS)
-    if file.exists() and (file.is_dir() or not force):
-        hint = "It is a directory." if file.is_dir() else "It exists; --force replaces it."
-        raise ParameterError("FILE", str(file), "a file that does not exist yet", hint=hint)
+    _check_new(file, force)
     if study:
         from frahm.sweep.study_file import study_template
 
@@ -53,6 +59,29 @@ def new(
         return
     write_text(file, template_text(file.stem, template))
     typer.echo(f"{file} written. Edit it, then: frahm check {file}")
+
+
+def _check_new(file: Path, force: bool) -> None:
+    from frahm.errors import ParameterError
+
+    if file.exists() and (file.is_dir() or not force):
+        hint = "It is a directory." if file.is_dir() else "It exists; --force replaces it."
+        raise ParameterError("FILE", str(file), "a file that does not exist yet", hint=hint)
+
+
+def _new_members(file: Path, others: bool, force: bool) -> None:
+    from frahm.errors import ParameterError
+    from frahm.files import write_bytes
+
+    if others:
+        raise ParameterError("--members", True, "alone, without --study and --kind")
+    if file.suffix.lower() not in (".csv", ".xlsx"):
+        raise ParameterError("FILE", str(file), "a file that ends in .csv or .xlsx")
+    _check_new(file, force)
+    from frahm.screening import template_csv, template_xlsx
+
+    write_bytes(file, template_xlsx() if file.suffix.lower() == ".xlsx" else template_csv().encode())
+    typer.echo(f"{file} written. Edit it, then: frahm screen {file}")
 
 
 def cases() -> None:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from frahm.errors import ParameterError
+from frahm.errors import ParameterError, door
 from frahm.files import json_or_nothing
 
 if TYPE_CHECKING:
     from frahm.case import Case
 
-_OWN_FILES = ("summary.json", "report.html", "report.pdf", "results.nc", "best.yaml")
+_OWN_FILES = ("summary.json", "report.html", "report.pdf", "results.nc", "best.yaml", "members.csv")
 
 _OWN_FIGURES = (
-    "response-*", "motion-*", "slow-manifold*", "basin-map*", "unsteady-wind*", "fatigue*", "design-*", "decision*",
+    "response-*", "motion-*", "slow-manifold*", "basin-map*", "unsteady-wind*", "fatigue*", "design-*", "decision*", "members-*",
 )  # fmt: skip
 
 
@@ -25,7 +25,12 @@ _DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt"
 
 def default_folder(case: Case) -> Path:
     """Folder out/<name of the case>, with nothing in the name a file system could mind."""
-    name = re.sub(r"[^\w.-]+", "-", case.name).strip(".-")
+    return folder_called(case.name)
+
+
+def folder_called(title: str) -> Path:
+    """Folder out/<name>, with nothing in the name a file system could mind."""
+    name = re.sub(r"[^\w.-]+", "-", title).strip(".-")
     if name.split(".")[0].lower() in _DEVICES:
         name = f"case-{name}"
     return Path("out") / (name or "case")
@@ -39,21 +44,59 @@ def claim_folder(folder: Path, case: Case, *, force: bool) -> None:
     ParameterError
         If it is a file, cannot be written, or holds anything else and `force` is not set.
     """
+    if _occupied(folder) and not holds_case(folder, case):
+        _take(folder, force, "a new or empty folder, or one of the same case")
+    if not _same_case(folder / "case.yaml", case):
+        case.to_yaml(folder / "case.yaml")
+
+
+def claim_members_folder(folder: Path, digest: str, *, force: bool) -> None:
+    """Make sure `folder` exists, can be written, and holds nothing but a screening of this very table.
+
+    Raises
+    ------
+    ParameterError
+        If it is a file, cannot be written, or holds anything else and `force` is not set.
+    """
+    summary = members_summary(folder)
+    same = summary is not None and summary["results"]["provenance"]["digest"] == digest
+    if _occupied(folder) and not same:
+        _take(folder, force, "a new or empty folder, or one of the same table")
+
+
+def members_summary(folder: Path) -> dict[str, Any] | None:
+    """Summary of a folder that `frahm screen` wrote; None if the folder holds something else."""
+    from frahm.screening.store import SCHEMA
+
+    summary = json_or_nothing(folder / "summary.json")
+    if not isinstance(summary, dict) or summary.get("schema") != SCHEMA:
+        return None
+    with door("DIR", str(folder), "a folder that `frahm screen` wrote", "summary.json is damaged."):
+        return {"unverified": [*summary["unverified"]], "results": {
+            "sentence": str(summary["results"]["sentence"]), "members": [*summary["results"]["members"]],
+            "not_judged": [*summary["results"]["not_judged"]],
+            "provenance": {"digest": str(summary["results"]["provenance"]["digest"])},
+        }}  # fmt: skip
+
+
+def _occupied(folder: Path) -> bool:
+    """Whether a folder, made if it was not there, holds anything."""
     allowed = "a folder that can be written"
     try:
         if folder.exists() and not folder.is_dir():
             raise ParameterError("--out", str(folder), allowed, hint="It is a file.")
         folder.mkdir(parents=True, exist_ok=True)
-        occupied = any(folder.iterdir())
+        return any(folder.iterdir())
     except OSError as error:
         raise ParameterError("--out", str(folder), allowed, hint=f"{error.strerror or error}.") from None
-    if occupied and not holds_case(folder, case):
-        if not force:
-            hint = f"{_contents(folder)} --force writes there all the same."
-            raise ParameterError("--out", str(folder), "a new or empty folder, or one of the same case", hint=hint)
-        _forget(folder)
-    if not _same_case(folder / "case.yaml", case):
-        case.to_yaml(folder / "case.yaml")
+
+
+def _take(folder: Path, force: bool, allowed: str) -> None:
+    """Refuse a folder that holds something else, or forget the results in it."""
+    if not force:
+        hint = f"{_contents(folder)} --force writes there all the same."
+        raise ParameterError("--out", str(folder), allowed, hint=hint)
+    _forget(folder)
 
 
 def holds_case(folder: Path, case: Case) -> bool:

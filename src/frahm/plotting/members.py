@@ -1,0 +1,119 @@
+"""Figures of a screening: how far every member uses its limits, and where its critical wind and its damping put it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from frahm.plotting.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    SKY,
+    VERMILLION,
+    decade_axis,
+    figure_style,
+    legend_below,
+    new_figure,
+    save_figure,
+)
+from frahm.screening import FAIL, LOOK_CLOSER, PASS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Row = Mapping[str, Any]
+LOOKS = {FAIL: (VERMILLION, "X"), LOOK_CLOSER: (ORANGE, "^"), PASS: (GREEN, "o")}
+MOST_BARS = 30
+_LEAST = 1e-3  # utilisation below which bars are as good as none
+_LONGEST = 18  # characters of a name
+_CRITERIA = ((16.0, "K$_s$ = 16: Brown & Root, DNV"), (18.0, "18: Moe & Arild"), (28.0, "28: seen at Statfjord A"))
+_STYLES = ("-", "--", ":")
+
+
+def save_member_figures(rows: Sequence[Row], folder: str | Path) -> list[Path]:
+    """Draw both figures into an existing folder, as SVG and PNG; return the paths.
+
+    Parameters
+    ----------
+    rows : sequence of mapping
+        Members as the summary has them, the worst first.
+    folder : str or Path
+    """
+    paths: list[Path] = []
+    with figure_style():
+        if any(row["largest_utilisation"] is not None for row in rows):
+            paths += save_figure(utilisation_figure(rows), Path(folder) / "members-utilisation", narrow=True)
+        if any(row["critical_wind"] is not None for row in rows):
+            paths += save_figure(wind_figure(rows), Path(folder) / "members-wind", narrow=True)
+    return paths
+
+
+def utilisation_figure(rows: Sequence[Row]) -> Figure:
+    """Largest utilisation of the worst members as bars; whoever fails is solid, whoever is open hatched."""
+    known = [row for row in rows if row["largest_utilisation"] is not None][:MOST_BARS]
+    figure = new_figure(160, 26 + 5 * len(known))
+    axes = figure.subplots()
+    top = 4 * max(1.0, *(row["largest_utilisation"] for row in known))
+    drawn: set[str] = set()
+    for place, row in enumerate(known):
+        colour, word = LOOKS[row["verdict"]][0], row["verdict"]
+        used = row["largest_utilisation"]
+        looks = {"facecolor": colour} if word == FAIL else {"facecolor": "white", "hatch": "////"}
+        looks = {"facecolor": colour, "alpha": 0.55} if word == PASS else looks
+        label = "_" if word in drawn else word
+        drawn.add(word)
+        axes.barh(place, max(used, _LEAST) - _LEAST / 2, left=_LEAST / 2, height=0.7, edgecolor=colour, label=label, **looks)
+        text = f"{used:.3g}" if used >= _LEAST else f"below {_LEAST:g}"
+        axes.annotate(text, (max(used, _LEAST), place), (3, 0), textcoords="offset points", va="center", fontsize=7,
+                      color=INK)  # fmt: skip
+    axes.axvline(1.0, color=INK, linewidth=1.0, label="limit")
+    axes.set_yticks(range(len(known)), [_short(row["name"]) for row in known], fontsize=7.5)
+    axes.set(xscale="log", xlim=(_LEAST / 2, top), ylim=(len(known) - 0.4, -0.6),
+             xlabel="largest utilisation of a limit [-]")  # fmt: skip
+    decade_axis(axes.xaxis)
+    axes.grid(visible=False, axis="y")
+    legend_below(figure, 4)
+    return figure
+
+
+def wind_figure(rows: Sequence[Row]) -> Figure:
+    """Mass damping over the critical wind of every member, with what criteria say, and the strongest wind."""
+    known = [row for row in rows if row["critical_wind"] is not None and row["scruton_number"] is not None]
+    figure = new_figure(160, 100)
+    axes = figure.subplots()
+    for word, (colour, marker) in LOOKS.items():
+        own = [row for row in known if row["verdict"] == word]
+        if own:
+            axes.plot([row["critical_wind"] for row in own], [row["scruton_number"] for row in own], marker,
+                      color=colour, markersize=6, markeredgecolor="white", markeredgewidth=0.5, label=word)  # fmt: skip
+    for (K, text), style in zip(_CRITERIA, _STYLES, strict=True):
+        axes.axhline(K, color=GREY, linewidth=0.9, linestyle=style, label=text)
+    _shade_winds(axes, known)
+    largest = max([row["scruton_number"] for row in known] + [_CRITERIA[-1][0]])
+    axes.set(xlim=(0, 1.05 * max(row["critical_wind"] for row in known)), ylim=(0, 1.1 * largest),
+             xlabel="critical wind of the first mode, v$_{crit}$ = f D / St [m/s]",
+             ylabel="mass damping K$_s$ [-]")  # fmt: skip
+    legend_below(figure, 3)
+    return figure
+
+
+def _shade_winds(axes: Axes, rows: Sequence[Row]) -> None:
+    """The winds of the site, where all members stand in the same."""
+    sites = {tuple(row["site_winds"]) for row in rows}
+    if len(sites) != 1:
+        return
+    low, high = sites.pop()
+    if high is not None and math.isfinite(high):
+        axes.axvspan(low or 0.0, high, color=SKY, alpha=0.13, linewidth=0, label="winds of the site")
+        axes.axvline(high, color=BLUE, linewidth=0.8)
+
+
+def _short(name: str) -> str:
+    text = name.replace("$", r"\$")
+    return text if len(name) <= _LONGEST else text[: _LONGEST - 1] + "\N{HORIZONTAL ELLIPSIS}"
