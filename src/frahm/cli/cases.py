@@ -20,7 +20,8 @@ def check(case: CaseArgument) -> None:
 
 def new(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help="File to write, ending in .yaml or .yml; of members in .csv or .xlsx.")
+        Path,
+        typer.Argument(metavar="FILE", help="File to write, ending in .yaml or .yml; of members in .csv or .xlsx."),
     ],
     kind: Annotated[
         str | None,

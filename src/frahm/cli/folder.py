@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 _OWN_FILES = ("summary.json", "report.html", "report.pdf", "results.nc", "best.yaml", "members.csv")
 
 _OWN_FIGURES = (
-    "response-*", "motion-*", "slow-manifold*", "basin-map*", "unsteady-wind*", "fatigue*", "design-*", "decision*", "members-*",
+    "response-*", "motion-*", "slow-manifold*", "basin-map*", "unsteady-wind*", "fatigue*", "design-*", "decision*",
+    "members-*",
 )  # fmt: skip
 
 

@@ -80,7 +80,9 @@ def _conclude(found: MemberScreen, folder: Path, written: list[Path]) -> None:
         raise typer.Exit(ExitCode.INTERRUPTED)
     typer.echo(f"Report: {folder / 'report.html'} (table: members.csv, numbers: summary.json)")
     if written:
-        typer.echo(f"{len(written)} case{'s' * (len(written) > 1)} in {written[0].parent}; next: frahm run {written[0]}")
+        typer.echo(
+            f"{len(written)} case{'s' * (len(written) > 1)} in {written[0].parent}; next: frahm run {written[0]}"
+        )
     if found.table.ignored:
         say(f"frahm: note: columns that were not read: {', '.join(found.table.ignored)}", err=True)
     for member in found.members:

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from matplotlib.patheffects import withStroke
+
 from frahm.plotting.style import (
     BLUE,
     GREEN,
@@ -64,14 +66,15 @@ def utilisation_figure(rows: Sequence[Row]) -> Figure:
     for place, row in enumerate(known):
         colour, word = LOOKS[row["verdict"]][0], row["verdict"]
         used = row["largest_utilisation"]
-        looks = {"facecolor": colour} if word == FAIL else {"facecolor": "white", "hatch": "////"}
-        looks = {"facecolor": colour, "alpha": 0.55} if word == PASS else looks
+        is_open, faint = word == LOOK_CLOSER, 0.55 if word == PASS else None
+        looks: dict[str, Any] = {"facecolor": "white", "hatch": "////"} if is_open else {"facecolor": colour}
         label = "_" if word in drawn else word
         drawn.add(word)
-        axes.barh(place, max(used, _LEAST) - _LEAST / 2, left=_LEAST / 2, height=0.7, edgecolor=colour, label=label, **looks)
+        start, end = _LEAST / 2, max(used, _LEAST)
+        axes.barh(place, end - start, 0.7, start, edgecolor=colour, label=label, alpha=faint, **looks)
         text = f"{used:.3g}" if used >= _LEAST else f"below {_LEAST:g}"
         axes.annotate(text, (max(used, _LEAST), place), (3, 0), textcoords="offset points", va="center", fontsize=7,
-                      color=INK)  # fmt: skip
+                      color=INK, path_effects=[withStroke(linewidth=2, foreground="white")], zorder=5)  # fmt: skip
     axes.axvline(1.0, color=INK, linewidth=1.0, label="limit")
     axes.set_yticks(range(len(known)), [_short(row["name"]) for row in known], fontsize=7.5)
     axes.set(xscale="log", xlim=(_LEAST / 2, top), ylim=(len(known) - 0.4, -0.6),

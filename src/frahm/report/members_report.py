@@ -7,28 +7,29 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.loads import amplitude_estimates, lock_in_band
 from frahm.plotting.members import MOST_BARS, save_member_figures
-from frahm.report.environment import template
+from frahm.report.environment import kept_together, template
 from frahm.report.numbers import number
 from frahm.report.references import Reference, reference_rows
 from frahm.report.report import REPORT_FILE, image_address
+from frahm.report.tables import with_indices
 from frahm.screening import FAIL, LOOK_CLOSER, NOT_JUDGED, PASS, MemberScreen, share
 
 Row = Mapping[str, Any]
 _MARKS = {FAIL: "fail", LOOK_CLOSER: "unverified", NOT_JUDGED: "unverified", PASS: "pass"}
 VERDICT_HEAD = ["Member", "Verdict", "Most used", "Why"]
 NUMBER_HEAD = [
-    "Member", "f [Hz]", "Critical wind [m/s]", "Lock-in [m/s]", "Site [m/s]", "K_s", "Amplitude [mm]", "A/D",
-    "Estimates of A/D", "Stress range [MPa]", "Damage", "if locked in",
+    "Member", "f [Hz]", "Critical wind [m/s]", "Lock-in [m/s]", "K\N{LATIN SUBSCRIPT SMALL LETTER S}", "Amplitude [mm]",
+    "A/D", "Estimates of A/D", "Stress range [MPa]", "Damage", "Damage if locked in",
 ]  # fmt: skip
 INPUT_HEAD = [
-    "Member", "D [mm]", "t [mm]", "L [m]", "Ends", "Damping [%]", "Mass [kg/m]", "Modes", "Curve", "SCF", "DFF",
-    "Life [years]", "Row",
+    "Member", "D [mm]", "t [mm]", "L [m]", "Ends", "Damping [%]", "Mass [kg/m]", "Winds [m/s]", "Modes", "Curve", "SCF",
+    "DFF", "Life [years]", "Row",
 ]  # fmt: skip
 CRITERION_HEAD = ["Criterion", "It expects vibration for", "Yes", "No", "Not decided", "Standing"]
 _YEAR = 365.25 * 86400.0
@@ -66,7 +67,6 @@ def render_members_report(screen: MemberScreen, images: dict[str, str]) -> str:
         mark=_MARKS[worst],
         images=images,
         plots={},
-        cards=[(word, count) for word, count in screen.counts.items() if count or word != NOT_JUDGED],
         verdict_head=VERDICT_HEAD,
         verdicts=[_verdict_row(row) for row in rows],
         left_out=[(row["name"] or _UNKNOWN, row["place"], row["why"]) for row in results["not_judged"]],
@@ -92,7 +92,7 @@ def _verdict_row(row: Row) -> tuple[Any, ...]:
     used = row["largest_utilisation"]
     limit = max(row["utilisation"], key=lambda name: row["utilisation"][name] or 0.0, default="")
     most = _UNKNOWN if used is None else f"{share(used)}, {limit.replace('_', ' ')}"
-    reasons = Markup("<br>").join(escape(reason) for reason in row["reasons"])
+    reasons = Markup("<br>").join(kept_together(reason) for reason in with_indices([tuple(row["reasons"])])[0])
     return row["name"], _status(row["verdict"]), most, reasons
 
 
@@ -101,10 +101,15 @@ def _number_row(row: Row) -> tuple[str, ...]:
     stress = row["stress_range"]
     return (
         row["name"], number(row["natural_frequency_hz"], 3), number(row["critical_wind"], 3), _span(low, high),
-        _span(*row["site_winds"]), number(row["scruton_number"], 3), number(_times(row["pipe_peak"], 1e3), 3),
-        number(row["amplitude_ratio"], 3), _span(*row["estimates"]), number(_times(stress, 1e-6), 3),
-        number(row["damage"], 2), number(row["damage_locked_in"], 2),
+        number(row["scruton_number"], 3), _least(_times(row["pipe_peak"], 1e3), 0.01, 3),
+        _least(row["amplitude_ratio"], 1e-4, 3), _span(*row["estimates"]), _least(_times(stress, 1e-6), 0.1, 3),
+        _least(row["damage"], 1e-4, 2), _least(row["damage_locked_in"], 1e-4, 2) if row["excited"] else _UNKNOWN,
     )  # fmt: skip
+
+
+def _least(value: float | None, least: float, digits: int) -> str:
+    """A number for people; what is too small to matter is "below" that."""
+    return f"below {least:g}" if value is not None and 0 < value < least else number(value, digits)
 
 
 def _times(value: float | None, factor: float) -> float | None:
@@ -121,7 +126,8 @@ def _input_row(row: Row) -> tuple[str, ...]:
     detail = ("curve", "stress_concentration", "design_fatigue_factor")
     return (
         row["name"], number(1e3 * row["diameter"], 4), number(1e3 * row["wall"], 4), number(row["length"], 4),
-        row["ends"], number(100 * row["damping_ratio"], 3), number(row["mass_per_length"], 4), str(row["mode_count"]),
+        row["ends"], number(100 * row["damping_ratio"], 3), number(row["mass_per_length"], 4),
+        _span(*row["site_winds"]), str(row["mode_count"]),
         *(_UNKNOWN if fatigue is None else number(fatigue.get(name, _UNKNOWN)) for name in detail),
         _UNKNOWN if climate is None else number(climate["duration"] / _YEAR), row["place"].rpartition(":")[2],
     )  # fmt: skip
@@ -132,7 +138,8 @@ def _mode_row(row: Row) -> tuple[str, ...]:
     first = row["modes"][0]
     return (
         row["name"], str(row["mode"]), number(own["natural_frequency"] / (2 * math.pi), 3),
-        number(own["wind_speed"], 3), number(_times(own["pipe_peak"], 1e3), 3), number(_times(first["pipe_peak"], 1e3), 3),
+        number(own["wind_speed"], 3), number(_times(own["pipe_peak"], 1e3), 3),
+        number(_times(first["pipe_peak"], 1e3), 3),
     )  # fmt: skip
 
 

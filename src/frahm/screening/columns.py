@@ -1,4 +1,4 @@
-"""The columns of a table of members: what each is called, where it goes in the case of a member, what its default is."""
+"""The columns of a table of members: names, places in the case of a member, defaults."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ COLUMNS = (
     MemberColumn("diameter", "pipe.diameter", "m", "mm", ("outer diameter", "outside diameter", "od", "d"), REQUIRED),
     MemberColumn("wall thickness", "pipe.wall", "m", "mm", ("wall", "thickness", "wt", "t"), REQUIRED),
     MemberColumn("length", "pipe.length", "m", "m", ("span", "l"), REQUIRED),
-    MemberColumn("ends", "pipe.supports", aliases=("end conditions", "supports", "fixity"), default=REQUIRED, text=True),
+    MemberColumn("ends", "pipe.supports", "", "", ("end conditions", "supports", "fixity"), REQUIRED, text=True),
     MemberColumn("damping ratio", "pipe.damping_ratio", "", "%", ("damping", "zeta"), REQUIRED),
     MemberColumn("rotational stiffness", "pipe.supports.rotation", "N m", "kN m", ("end stiffness",),
                  "none: pinned ends turn freely"),

@@ -10,7 +10,7 @@ from frahm.errors import ParameterError, nearest
 _KINDS = {"pinned": "pinned", "fixed": "clamped", "clamped": "clamped", "free": "free"}
 _PAIRS = {
     **{kind: (held, held) for kind, held in _KINDS.items() if held != "free"},
-    **{f"{a}-{b}": (held, other) for a, held in _KINDS.items() for b, other in _KINDS.items() if "free" != held},
+    **{f"{a}-{b}": (held, other) for a, held in _KINDS.items() for b, other in _KINDS.items() if held != "free"},
     **{f"free-{b}": ("free", other) for b, other in _KINDS.items() if other != "free"},
     "cantilever": ("clamped", "free"),
 }

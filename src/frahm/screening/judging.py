@@ -63,7 +63,8 @@ class Findings:
         Whether a wind of the site lies in the lock-in band of a mode, or can lock in to it.
     damage : dict or None
         Fatigue of all modes, and beside it what winds outside all of their bands do (`outside`, mostly near the wind
-        `outside_wind` [m/s]), and what lock-in to a resonance that the site has no wind for would do (`held`); None without climate and S-N curve.
+        `outside_wind` [m/s]), and what lock-in to a resonance that the site has no wind for would do (`held`);
+        None without climate and S-N curve.
     damage_doubts : tuple of str
         What speaks against it.
     limits : tuple of Utilisation
@@ -124,7 +125,7 @@ def findings(member: MemberCase) -> Findings:
     motion = joined([one for _, one in motions])
     damage, doubts = _damage(case, motions, site)
     band = lock_in_band(case)
-    low, high = amplitude_estimates(case).interval
+    low, high = (amplitude / case.pipe.diameter for amplitude in amplitude_estimates(case).interval)
     return Findings(
         case=case,
         site=site,
@@ -159,7 +160,7 @@ def _damage(
 
 
 def _held_damage(case: Case, motion: WorstMotion, site: tuple[float, float]) -> float:
-    """Damage if every wind of the site in the lock-in band of a mode held its resonance, which the site has no wind for.
+    """Damage if every wind of the site in the lock-in band of a mode held its resonance, where it lacks that wind.
 
     0 where the site has the resonant wind: then the locked-in damage of the count says more.
     """

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from frahm.analysis import plain
-from frahm.case import Case
+from frahm.case import Case, Tube
 from frahm.screening.judging import Findings, criterion_row
 from frahm.screening.verdict import VERDICTS, Verdict
 
@@ -77,6 +77,7 @@ class ScreenedMember:
 def _numbers(found: Findings) -> dict[str, Any]:
     case, motion, used = found.case, found.motion, found.most_used
     pipe, damage = case.pipe, found.damage or {}
+    assert isinstance(pipe, Tube)
     return {
         "diameter": pipe.diameter,
         "wall": pipe.wall,

@@ -13,7 +13,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from frahm.errors import ParameterError, nearest, shown
+from frahm.errors import ParameterError, nearest
 from frahm.screening.columns import BY_NAME, COLUMNS, MemberColumn, column_called, known_names, plain_name
 from frahm.tables import Cells, are_units, name_and_unit, number_of, read_cells
 from frahm.units import si_value, with_unit
@@ -165,7 +165,7 @@ def _head_row(cells: Cells) -> int:
             return i
     needed = ", ".join(column.name for column in COLUMNS if column.required)
     raise ParameterError("members", cells.source, f"a table with the columns {needed} in its head",
-                         hint="No row has the names of the columns: frahm new FILE --members writes a table that does.")  # fmt: skip
+                         hint="No row has these names: frahm new FILE --members writes a table that does.")  # fmt: skip
 
 
 def _heads(source: str, names: Iterable[tuple[str, str]]) -> tuple[list[_Head], list[str]]:
@@ -217,7 +217,13 @@ def _check_complete(source: str, heads: Sequence[_Head], given: Sequence[str]) -
     first = missing[0]
     others = [name for name in given if name and column_called(name) is None]
     near = nearest(first.name, [plain_name(name) for name in others])
-    hint = f"Is it the column {near!r}?" if near else f"Also known as {', '.join(first.aliases)}." if first.aliases else None
+    hint = (
+        f"Is it the column {near!r}?"
+        if near
+        else f"Also known as {', '.join(first.aliases)}."
+        if first.aliases
+        else None
+    )
     words = ", ".join(column.head for column in missing)
     raise ParameterError("members", source, f"a table with the column{'s' * (len(missing) > 1)} {words}", hint=hint)
 

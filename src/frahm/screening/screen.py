@@ -124,7 +124,7 @@ class MemberScreen:
 
 
 def screen_members(table: Any, *, progress: Progress | None = None) -> MemberScreen:
-    """Judge every member of a table in the winds of its site: those that fail, those to look closer at, those that pass.
+    """Judge every member of a table in the winds of its site: FAIL, LOOK CLOSER or PASS.
 
     Each member is an elastic tube without absorbers, whose response is known in closed form: its worst amplitude is
     that of `frahm.worst_case` of its case, over every mode that winds of the site excite.

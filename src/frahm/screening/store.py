@@ -149,7 +149,9 @@ def save_cases(members: Iterable[ScreenedMember], folder: str | Path) -> list[Pa
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise ParameterError("--cases", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
+        raise ParameterError(
+            "--cases", str(folder), "a folder that can be written", hint=f"{error.strerror}."
+        ) from None
     paths: list[Path] = []
     for member in members:
         path = _unlike(folder / f"{file_name(member.name)}.yaml", paths)

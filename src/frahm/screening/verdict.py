@@ -43,7 +43,7 @@ def verdict_of(found: Findings) -> Verdict:
     beyond = sorted((row for row in found.limits if row.ratio > 1), key=lambda row: -row.ratio)
     if beyond:
         doubts = (*found.motion.unverified, *found.damage_doubts)
-        words = [f"{row.text}, {share(row.ratio)}" for row in beyond]
+        words = [row.text if row.limit == 1 else f"{row.text}, {share(row.ratio)}" for row in beyond]
         return Verdict(FAIL, (f"{'; '.join(words)}; {_where(found)}.", *doubts, *found.implausible))
     open_questions = tuple(_open_questions(found))
     if open_questions:
@@ -106,10 +106,12 @@ def _unknown(found: Findings) -> Iterator[str]:
         )
     if not found.limits and found.excited:
         motion = found.motion
-        stress = "" if math.isnan(motion.stress_range) else f" and a stress range of {readable.stress(motion.stress_range)}"
+        stress = (
+            "" if math.isnan(motion.stress_range) else f" and a stress range of {readable.stress(motion.stress_range)}"
+        )
         yield (
-            f"It is excited from {found.onset:.3g} m/s on, with {readable.length(motion.pipe_peak)}{stress}, and nothing"
-            " says what it may: give a climate with an S-N curve, or a limit."
+            f"It is excited from {found.onset:.3g} m/s on, with {readable.length(motion.pipe_peak)}{stress}, and"
+            " nothing says what it may: give a climate with an S-N curve, or a limit."
         )
 
 
@@ -140,8 +142,8 @@ def _near(found: Findings) -> Iterator[str]:
             yield f"{row.text}: a lift {LIFT_MARGIN - 1:.0%} larger would break it."
     if not found.excited and found.site[1] < found.onset <= LIFT_MARGIN * found.site[1]:
         yield (
-            f"The strongest wind of the site, {readable.speed(found.site[1])}, comes within {LIFT_MARGIN - 1:.0%} of the"
-            f" {found.onset:.3g} m/s at which {_BAND} begins."
+            f"The strongest wind of the site, {readable.speed(found.site[1])}, comes within {LIFT_MARGIN - 1:.0%} of"
+            f" the {found.onset:.3g} m/s at which {_BAND} begins."
         )
 
 

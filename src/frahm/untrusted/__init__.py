@@ -1,8 +1,8 @@
 """Binary files that anybody may have written, parsed in a process of their own with bounds on memory and time.
 
 The libraries that read MAT and HDF5 files are native code: a damaged file can end the process that reads it, and a
-small one, or a small workbook, can ask for any amount of memory. What comes back from the other process is plain: text, numbers, and arrays
-as raw bytes, nothing that could be executed.
+small one, or a small workbook, can ask for any amount of memory. What comes back from the other process is plain: text,
+numbers, and arrays as raw bytes, nothing that could be executed.
 """
 
 from __future__ import annotations
