@@ -67,6 +67,8 @@ def member_case(row: MemberRow) -> MemberCase:
         case = load_case(_data(values))
     except ParameterError as error:
         raise _in_words_of_the_table(error) from None
+    if case.pipe.damping_ratio == 0:
+        raise ParameterError("damping ratio", 0.0, "above 0", hint="Without damping nothing bounds the resonance.")
     case = _with_modes(case, "modes" in values)
     if "wind speed" not in values:
         case = case.with_wind(speed=_design_wind(case))

@@ -70,6 +70,11 @@ class MemberTable:
     ignored: tuple[str, ...] = ()
 
     @property
+    def title(self) -> str:
+        """Name of the file without its folder."""
+        return Path(self.source).name
+
+    @property
     def digest(self) -> str:
         """SHA-256 of the values, whatever file they came in."""
         content = [[row.name, row.problem and row.place, dict(row.values)] for row in self.rows]

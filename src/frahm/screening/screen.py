@@ -91,7 +91,8 @@ class MemberScreen:
         """What it comes to, in one sentence."""
         counts = self.counts
         words = [f"{counts[word]} {word}" for word in VERDICTS if counts[word]]
-        return f"{len(self.members)} members of {self.table.source}: {', '.join(words)}."
+        plural = "" if len(self.members) == 1 else "s"
+        return f"{len(self.members)} member{plural} of {self.table.title}: {', '.join(words)}."
 
     @property
     def assumptions(self) -> dict[str, tuple[str, int]]:
@@ -187,4 +188,4 @@ def provenance(table: MemberTable) -> dict[str, Any]:
     """Digest of a table, and versions."""
     versions = {"python": platform.python_version()}
     versions |= {name: importlib.metadata.version(name) for name in ("numpy", "scipy")}
-    return {"source": table.source, "digest": table.digest, "versions": versions}
+    return {"source": table.title, "digest": table.digest, "versions": versions}

@@ -74,7 +74,7 @@ def expecting(row: Row) -> list[str]:
 def summary_of(screen: MemberScreen) -> dict[str, Any]:
     """Everything as plain data for strict JSON; numbers that are not finite become None."""
     left = screen.counts[NOT_JUDGED]
-    detail = f"{len(screen) - left} of {len(screen)} rows of {screen.table.source}."
+    detail = f"{len(screen) - left} of {len(screen)} rows of {screen.table.title}."
     return {
         "schema": SCHEMA,
         "frahm": screen.version,
