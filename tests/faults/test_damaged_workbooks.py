@@ -100,7 +100,10 @@ def test_a_small_workbook_cannot_take_much_memory(tmp_path):
 
 
 def test_a_cell_in_the_last_row_of_a_sheet_is_soon_found(tmp_path):
-    cell = '<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData><row r="{0}"><c r="A{0}" t="inlineStr"><is><t>name</t></is></c></row></sheetData></worksheet>'
+    cell = (
+        '<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData><row r="{0}">'
+        '<c r="A{0}" t="inlineStr"><is><t>name</t></is></c></row></sheetData></worksheet>'
+    )
     assert "beyond the last" in refused(tmp_path, with_entry(workbook_bytes(), SHEET, cell.format(3_000_000).encode()))
 
 

@@ -11,7 +11,7 @@ import frahm
 from frahm.cli import app
 from frahm.screening.store import CSV_COLUMNS
 
-HEAD = "name;diameter [mm];wall thickness [mm];length [m];ends;damping ratio [%];highest wind [m/s];displacement limit [mm]"
+HEAD = "name;diameter [mm];wall [mm];length [m];ends;damping ratio [%];highest wind [m/s];displacement limit [mm]"
 PASSES = "A1;508;12,7;8;fixed;0,15;20;50"
 FAILS = "A2;508;12,7;25;fixed;0,15;20;5"
 OPEN = "A3;508;12,7;16,5;fixed;0,15;26;50"

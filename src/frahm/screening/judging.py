@@ -36,7 +36,7 @@ from frahm.loads import (
     wind_excitation,
 )
 from frahm.plausibility import plausibility
-from frahm.screening.member_case import MemberCase
+from frahm.screening.member_case import MemberCase, lacks_modes
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,6 +71,8 @@ class Findings:
         Every limit that is given, and damage.
     estimates : (float, float)
         Smallest and largest published estimate of the amplitude over the diameter in resonance [-].
+    lacks_modes : bool
+        Whether winds of the site excite a mode above those that take part.
     implausible : tuple of str
         What a practised engineer would ask about.
     """
@@ -87,6 +89,7 @@ class Findings:
     damage_doubts: tuple[str, ...]
     limits: tuple[Utilisation, ...]
     estimates: tuple[float, float]
+    lacks_modes: bool
     implausible: tuple[str, ...]
 
     @property
@@ -140,6 +143,7 @@ def findings(member: MemberCase) -> Findings:
         damage_doubts=doubts,
         limits=tuple(utilisations(case, motion.row(), damage)),
         estimates=(float(low), float(high)),
+        lacks_modes=lacks_modes(case),
         implausible=tuple(_implausible(case, excited)),
     )
 

@@ -14,6 +14,7 @@ from frahm.loads import excited_bands, lock_in_band, site_winds, wind_excitation
 from frahm.screening.columns import BY_NAME, COLUMNS
 from frahm.screening.ends import supports_of
 from frahm.screening.reading import MemberRow
+from frahm.structure.modes import MOST_MODES
 from frahm.units import si_value
 
 _FEWEST_MODES, _MOST_MODES = 3, 24
@@ -168,6 +169,14 @@ def _with_modes(case: Case, given: bool) -> Case:
         case = case.with_pipe(mode_count=count)
     needed = 1 + sum(_lowest_wind(case, mode) <= highest for mode in range(1, case.pipe.modal.count + 1))
     return case.with_pipe(mode_count=min(max(needed, _FEWEST_MODES), count))
+
+
+def lacks_modes(case: Case) -> bool:
+    """Whether winds of the site excite a mode above those that take part; where nothing bounds them that is open."""
+    highest, count = site_winds(case)[0][1], case.pipe.modal.count
+    if math.isinf(highest) or _lowest_wind(case, count) > highest:
+        return False
+    return count >= MOST_MODES or _lowest_wind(case.with_pipe(mode_count=count + 1), count + 1) <= highest
 
 
 def _lowest_wind(case: Case, mode: int) -> float:

@@ -104,6 +104,9 @@ def _unknown(found: Findings) -> Iterator[str]:
             "The winds of the site are not known (highest wind, or a Weibull scale): only the lowest"
             f" {found.case.pipe.modal.count} modes were looked at, each in its own wind."
         )
+    if found.lacks_modes:
+        count = found.case.pipe.modal.count
+        yield f"Winds of the site excite modes above the {count} that were looked at (modes)."
     if not found.limits and found.excited:
         motion = found.motion
         stress = (

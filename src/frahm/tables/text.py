@@ -22,7 +22,8 @@ from frahm.units import is_unit
 
 _SAMPLE = 20  # lines that say how the table is laid out
 _LONGEST = 1_000_000  # characters in a line
-_COMMENTS = ("#", "%")
+_COMMENT = re.compile(r"\s*[#%]")
+_REMARK = re.compile(r'\s*"?#(\s|$)')  # where cells hold text a name may begin with the sign
 _MINUS = "\N{MINUS SIGN}"
 _NUMBER = re.compile(
     r"[-+]?(?:[0-9]+[.,]?[0-9]*|[.,][0-9]+)(?:e[-+]?[0-9]+)?|[-+]?(?:nan|inf|infinity)", re.ASCII | re.IGNORECASE
@@ -44,15 +45,17 @@ def text_table(path: Path, label: str, largest: int) -> Table:
 
 def text_cells(path: Path, label: str, largest: int) -> Cells:
     """Cells of a text file as they stand, columns apart by comma, semicolon, tab or blanks."""
-    return _decoded(path, label, lambda lines: _Reader(label, lines).cells())
+    return _decoded(path, label, lambda lines: _Reader(label, lines).cells(), _REMARK)
 
 
-def _decoded(path: Path, label: str, read: Callable[[Iterator[tuple[int, str]]], Read]) -> Read:
+def _decoded(
+    path: Path, label: str, read: Callable[[Iterator[tuple[int, str]]], Read], comment: re.Pattern[str] = _COMMENT
+) -> Read:
     """What is read of the lines of a file, in the first encoding that fits."""
     for encoding in _encodings(path):
         try:
             with path.open(encoding=encoding) as stream:
-                return read(_numbered(stream, label))
+                return read(_numbered(stream, label, comment))
         except UnicodeDecodeError:
             continue
         except OSError as error:
@@ -67,7 +70,7 @@ def _encodings(path: Path) -> tuple[str, ...]:
     return ("utf-16",) if mark in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig", "cp1252", "latin-1")
 
 
-def _numbered(stream: TextIO, label: str) -> Iterator[tuple[int, str]]:
+def _numbered(stream: TextIO, label: str, comment: re.Pattern[str]) -> Iterator[tuple[int, str]]:
     """Lines with something in them, and their numbers."""
     for number in itertools.count(1):
         line = stream.readline(_LONGEST + 1)
@@ -78,7 +81,7 @@ def _numbered(stream: TextIO, label: str) -> Iterator[tuple[int, str]]:
         if "\0" in line:
             raise ParameterError("file", label, "a text file", where=f"{label}:{number}", hint="It is not text.")
         text = line.strip(" \r\n")
-        if text.strip(" \t;,") and not text.lstrip().startswith(_COMMENTS):
+        if text.strip(" \t;,") and not comment.match(text):
             yield number, text
 
 

@@ -72,6 +72,13 @@ def test_a_cell_may_carry_its_unit(tmp_path):
     assert values(read_members(written(tmp_path, text)))["diameter"] == "20 inch"
 
 
+def test_a_name_may_begin_with_the_sign_of_a_remark(tmp_path):
+    rows = ['"# a remark, in quotes"', "#", HEAD, "# another", ROW.replace("B1", "#1")]
+    assert [row.name for row in read_members(written(tmp_path, "\n".join(rows))).rows] == ["#1"]
+    book = workbook(tmp_path, [["# remark"], HEAD.split(","), ["#1", *ROW.split(",")[1:]]])
+    assert [row.name for row in read_members(book).rows] == ["#1"]
+
+
 def test_columns_that_are_none_of_a_member_are_named(tmp_path):
     table = read_members(written(tmp_path, f"{HEAD},joint A,weight [kg]\n{ROW},J1,1200\n"))
     assert table.ignored == ("joint A", "weight")

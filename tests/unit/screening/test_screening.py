@@ -98,6 +98,7 @@ def test_a_member_that_is_excited_and_keeps_its_limits_passes():
         ({}, "winds of the site are not known"),
         ({"highest wind": 15.0}, "nothing says what it may"),
         ({"highest wind": 15.0, "s-n curve": "F1"}, "nothing says what it may"),
+        ({"highest wind": 30.0, "displacement limit": 0.4}, "excite modes above the 1 that were looked at"),
         ({"highest wind": 7.6}, "comes within 10% of"),
         ({"highest wind": 7.0}, "DNV 1977 expects vibration from"),
         ({"highest wind": 12.0, "displacement limit": 0.4, "damping ratio": 0.08}, "more than 0.05 takes a damper"),
