@@ -25,7 +25,7 @@ def write_pages() -> None:
     """Write every generated page; a file that would not change is left alone."""
     OUT.mkdir(exist_ok=True)
     pages = {"nomenclature": nomenclature, "results": results, "misprints": misprints, "validation": validation,
-             "sweep_variables": sweep_variables}  # fmt: skip
+             "sweep_variables": sweep_variables, "member_columns": member_columns}  # fmt: skip
     for name, page in {**pages, "api": api}.items():
         _keep(OUT / f"{name}.md", page())
     for name in SHORT_EXAMPLES:
@@ -166,6 +166,20 @@ def sweep_variables() -> str:
     return "\n".join(lines)
 
 
+# --- members --------------------------------------------------------------------------------------------------------
+
+
+def member_columns() -> str:
+    """The columns of a table of members, with their other names and defaults."""
+    from frahm.screening import COLUMNS
+
+    rows = [
+        (_code(c.head), ", ".join(map(_code, c.aliases)), c.description, f"*{c.default}*" if c.required else c.default)
+        for c in COLUMNS
+    ]
+    return "\n".join(_table(("column", "also", "what it is", "default"), rows))
+
+
 # --- misprints ------------------------------------------------------------------------------------------------------
 
 
@@ -195,7 +209,7 @@ _ROOMS = {
     "frahm.loads": "Wind", "frahm.plausibility": "Plausibility",
     "frahm.response": "Responses", "frahm.harmonic_balance": "Periodic responses",
     "frahm.time_integration": "Integration", "frahm.attractors": "Attractors", "frahm.assessment": "Fatigue",
-    "frahm.design": "Design", "frahm.sweep": "Parameter studies", "frahm.errors": "Errors",
+    "frahm.design": "Design", "frahm.screening": "Members", "frahm.sweep": "Parameter studies", "frahm.errors": "Errors",
 }  # fmt: skip
 
 
