@@ -209,7 +209,8 @@ _ROOMS = {
     "frahm.loads": "Wind", "frahm.plausibility": "Plausibility",
     "frahm.response": "Responses", "frahm.harmonic_balance": "Periodic responses",
     "frahm.time_integration": "Integration", "frahm.attractors": "Attractors", "frahm.assessment": "Fatigue",
-    "frahm.design": "Design", "frahm.screening": "Members", "frahm.sweep": "Parameter studies", "frahm.errors": "Errors",
+    "frahm.design": "Design", "frahm.screening": "Members",
+    "frahm.sweep": "Parameter studies", "frahm.errors": "Errors",
 }  # fmt: skip
 
 

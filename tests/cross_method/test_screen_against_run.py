@@ -10,6 +10,7 @@ from frahm.analysis.largest import largest_motion
 from frahm.analysis.linear import without_absorber
 from frahm.analysis.long_term import worst
 from frahm.analysis.wind import wind
+from frahm.design import check_design
 from frahm.screening import FAIL, save_cases
 
 NEEDED = (without_absorber, worst, fatigue, wind, largest_motion)
@@ -42,6 +43,11 @@ def test_the_verbs_of_python_say_the_same(screen, name):
     worst_case = frahm.worst_case(screen[name].case)
     assert worst_case.pipe_peak == screen[name].findings.motion.pipe_peak
     assert max(frahm.frequency_response(screen[name].case).pipe_peak) <= worst_case.pipe_peak * 1.001
+
+
+def test_a_design_can_start_from_every_member(screen):
+    for member in screen:
+        check_design(member.case)
 
 
 def test_a_table_without_climate_moves_as_far_as_its_case():

@@ -118,6 +118,7 @@ def test_bad_input_is_one_message_and_writes_nothing(tmp_path, rows, words):
 def test_a_folder_of_something_else_is_left_alone(tmp_path):
     path, out = table(tmp_path, PASSES), tmp_path / "out"
     assert run("screen", path, "--out", out).exit_code == 0
+    assert sorted(file.name for file in out.iterdir()) == ["figures", "members.csv", "report.html", "summary.json"]
     assert run("screen", path, "--out", out).exit_code == 0
     other = table(tmp_path, FAILS)
     refused = run("screen", other, "--out", out)

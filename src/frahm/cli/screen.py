@@ -54,7 +54,7 @@ def screen(
         found = screen_members(table, progress=progress)
         wanted = wanted_members(found, case or ()) if cases is not None or case else []
         save_screen(found, folder)
-        written = save_cases(wanted, folder / "cases" if cases is None else cases)
+        written = save_cases(wanted, folder / "cases" if cases is None else cases) if wanted else []
         if not found.interrupted:
             progress("figures and report", 0, 1)
             write_members_report(found, folder)

@@ -33,6 +33,7 @@ Row = Mapping[str, Any]
 LOOKS = {FAIL: (VERMILLION, "X"), LOOK_CLOSER: (ORANGE, "^"), PASS: (GREEN, "o")}
 MOST_BARS = 30
 _LEAST = 1e-3  # utilisation below which bars are as good as none
+_USED = "largest utilisation of a limit [-]"
 _LONGEST = 18  # characters of a name
 _CRITERIA = ((16.0, "K$_s$ = 16: Brown & Root, DNV"), (18.0, "18: Moe & Arild"), (28.0, "28: seen at Statfjord A"))
 _STYLES = ("-", "--", ":")
@@ -57,15 +58,20 @@ def save_member_figures(rows: Sequence[Row], folder: str | Path) -> list[Path]:
 
 
 def utilisation_figure(rows: Sequence[Row]) -> Figure:
-    """Largest utilisation of the worst members as bars; whoever fails is solid, whoever is open hatched."""
-    known = [row for row in rows if row["largest_utilisation"] is not None][:MOST_BARS]
-    figure = new_figure(160, 26 + 5 * len(known))
+    """Largest utilisation of every member: bars with names for a few members, points in their order for many."""
+    known = [row for row in rows if row["largest_utilisation"] is not None]
+    figure = _bars(known) if len(known) <= MOST_BARS else _ranked(known)
+    figure.draw_without_rendering()  # the margins know the names once they are drawn
+    return figure
+
+
+def _bars(rows: Sequence[Row]) -> Figure:
+    """A bar a member; who fails is solid, who is open hatched, who passes faint."""
+    figure = new_figure(160, 26 + 5 * len(rows))
     axes = figure.subplots()
-    top = 4 * max(1.0, *(row["largest_utilisation"] for row in known))
     drawn: set[str] = set()
-    for place, row in enumerate(known):
-        colour, word = LOOKS[row["verdict"]][0], row["verdict"]
-        used = row["largest_utilisation"]
+    for place, row in enumerate(rows):
+        colour, word, used = LOOKS[row["verdict"]][0], row["verdict"], row["largest_utilisation"]
         is_open, faint = word == LOOK_CLOSER, 0.55 if word == PASS else None
         looks: dict[str, Any] = {"facecolor": "white", "hatch": "////"} if is_open else {"facecolor": colour}
         label = "_" if word in drawn else word
@@ -73,16 +79,36 @@ def utilisation_figure(rows: Sequence[Row]) -> Figure:
         start, end = _LEAST / 2, max(used, _LEAST)
         axes.barh(place, end - start, 0.7, start, edgecolor=colour, label=label, alpha=faint, **looks)
         text = f"{used:.3g}" if used >= _LEAST else f"below {_LEAST:g}"
-        axes.annotate(text, (max(used, _LEAST), place), (3, 0), textcoords="offset points", va="center", fontsize=7,
-                      color=INK, path_effects=[withStroke(linewidth=2, foreground="white")], zorder=5)  # fmt: skip
+        axes.annotate(text, (end, place), (3, 0), textcoords="offset points", va="center", fontsize=7, color=INK,
+                      path_effects=[withStroke(linewidth=2, foreground="white")], zorder=5)  # fmt: skip
     axes.axvline(1.0, color=INK, linewidth=1.0, label="limit")
-    axes.set_yticks(range(len(known)), [_short(row["name"]) for row in known], fontsize=7.5)
-    axes.set(xscale="log", xlim=(_LEAST / 2, top), ylim=(len(known) - 0.4, -0.6),
-             xlabel="largest utilisation of a limit [-]")  # fmt: skip
+    axes.set_yticks(range(len(rows)), [_short(row["name"]) for row in rows], fontsize=7.5)
+    axes.set(xscale="log", xlim=(_LEAST / 2, _top(rows)), ylim=(len(rows) - 0.4, -0.6), xlabel=_USED)
     decade_axis(axes.xaxis)
     axes.grid(visible=False, axis="y")
     legend_below(figure, 4)
     return figure
+
+
+def _ranked(rows: Sequence[Row]) -> Figure:
+    """A point a member, the worst first; what is too small to matter lies on the lower edge."""
+    figure = new_figure(160, 95)
+    axes = figure.subplots()
+    for word, (colour, marker) in LOOKS.items():
+        own = [(place, max(row["largest_utilisation"], _LEAST)) for place, row in enumerate(rows, start=1)
+               if row["verdict"] == word]  # fmt: skip
+        if own:
+            axes.plot(*zip(*own, strict=True), marker, color=colour, markersize=4, markeredgewidth=0, label=word)
+    axes.axhline(1.0, color=INK, linewidth=1.0, label="limit")
+    axes.set(yscale="log", ylim=(_LEAST / 2, _top(rows)), xlim=(0, len(rows) + 1), ylabel=_USED,
+             xlabel="member, in the order of the table below")  # fmt: skip
+    decade_axis(axes.yaxis)
+    legend_below(figure, 4)
+    return figure
+
+
+def _top(rows: Sequence[Row]) -> float:
+    return 4 * max(1.0, *(row["largest_utilisation"] for row in rows))
 
 
 def wind_figure(rows: Sequence[Row]) -> Figure:
@@ -103,6 +129,7 @@ def wind_figure(rows: Sequence[Row]) -> Figure:
              xlabel="critical wind of the first mode, v$_{crit}$ = f D / St [m/s]",
              ylabel="mass damping K$_s$ [-]")  # fmt: skip
     legend_below(figure, 3)
+    figure.draw_without_rendering()
     return figure
 
 

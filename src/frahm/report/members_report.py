@@ -12,7 +12,7 @@ from markupsafe import Markup
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.loads import amplitude_estimates, lock_in_band
-from frahm.plotting.members import MOST_BARS, save_member_figures
+from frahm.plotting.members import save_member_figures
 from frahm.report.environment import kept_together, template
 from frahm.report.numbers import number
 from frahm.report.references import Reference, reference_rows
@@ -79,7 +79,6 @@ def render_members_report(screen: MemberScreen, images: dict[str, str]) -> str:
         other_modes=[_mode_row(row) for row in rows if row["mode"] != 1],
         assumptions=_assumption_rows(screen),
         references=_references(screen),
-        most_bars=MOST_BARS if len(rows) > MOST_BARS else 0,
         provenance=[*results["provenance"]["versions"].items()],
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import Any
 
 from frahm.errors import ParameterError, nearest
@@ -42,7 +43,7 @@ def supports_of(ends: str | float, length: float, bending_stiffness: float, rota
         if rotation:
             raise ParameterError("rotational stiffness", rotation, "nothing beside a fixity of the ends")
         return _of_fixity(ends, length, bending_stiffness)
-    words = "-".join(ends.lower().replace("/", "-").replace("_", "-").split())
+    words = "-".join(re.findall(r"[^\s/_-]+", ends.lower()))
     kinds = _PAIRS.get(words)
     if kinds is None:
         near = nearest(words, WORDS)

@@ -61,7 +61,12 @@ def _passes(found: Findings) -> str:
     limit = "" if used is None else f"; the limit used most is {named(used.name)}, {share(used.ratio)}"
     if not found.excited:
         return f"{_calm(found)}{limit}."
-    return f"Excited from {found.onset:.3g} m/s on, and all limits are kept{limit}."
+    return f"Excited{_from(found)}, and all limits are kept{limit}."
+
+
+def _from(found: Findings) -> str:
+    """From which wind on it is excited; nothing where the tables do not reach the band."""
+    return "" if math.isnan(found.onset) else f" from {found.onset:.3g} m/s on"
 
 
 def _calm(found: Findings) -> str:
@@ -113,7 +118,7 @@ def _unknown(found: Findings) -> Iterator[str]:
             "" if math.isnan(motion.stress_range) else f" and a stress range of {readable.stress(motion.stress_range)}"
         )
         yield (
-            f"It is excited from {found.onset:.3g} m/s on, with {readable.length(motion.pipe_peak)}{stress}, and"
+            f"It is excited{_from(found)}, with {readable.length(motion.pipe_peak)}{stress}, and"
             " nothing says what it may: give a climate with an S-N curve, or a limit."
         )
 

@@ -60,6 +60,18 @@ def test_fixity_goes_from_pinned_to_fixed():
     assert f[3] == pytest.approx(fixed, rel=1e-3)
 
 
+def test_ends_in_other_words():
+    for words in ("Fixed / Pinned", "fixed_pinned", "clamped pinned", "FIXED-PINNED"):
+        assert screened(ends=words).case.digest == screened().case.digest
+
+
+def test_tables_that_end_inside_the_band_leave_a_question():
+    found = screened(**{"strouhal": "facchinetti2004", "lift coefficient": "facchinetti2004", "highest wind": 25.0})
+    assert found.verdict.word == LOOK_CLOSER
+    assert "nan" not in " ".join(found.verdict.reasons)
+    assert found.row()["critical_wind"] is None
+
+
 def test_a_spring_at_pinned_ends_is_the_fixity_it_amounts_to():
     stiffness, _ = by_hand()
     k = 3 * 0.4 / 0.6 * stiffness / 25.0
