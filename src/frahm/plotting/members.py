@@ -60,9 +60,7 @@ def save_member_figures(rows: Sequence[Row], folder: str | Path) -> list[Path]:
 def utilisation_figure(rows: Sequence[Row]) -> Figure:
     """Largest utilisation of every member: bars with names for a few members, points in their order for many."""
     known = [row for row in rows if row["largest_utilisation"] is not None]
-    figure = _bars(known) if len(known) <= MOST_BARS else _ranked(known)
-    figure.draw_without_rendering()  # the margins know the names once they are drawn
-    return figure
+    return _bars(known) if len(known) <= MOST_BARS else _ranked(known)
 
 
 def _bars(rows: Sequence[Row]) -> Figure:
@@ -129,7 +127,6 @@ def wind_figure(rows: Sequence[Row]) -> Figure:
              xlabel="critical wind of the first mode, v$_{crit}$ = f D / St [m/s]",
              ylabel="mass damping K$_s$ [-]")  # fmt: skip
     legend_below(figure, 3)
-    figure.draw_without_rendering()
     return figure
 
 
@@ -145,5 +142,10 @@ def _shade_winds(axes: Axes, rows: Sequence[Row]) -> None:
 
 
 def _short(name: str) -> str:
-    text = name.replace("$", r"\$")
-    return text if len(name) <= _LONGEST else text[: _LONGEST - 1] + "\N{HORIZONTAL ELLIPSIS}"
+    """A name as a label: of a long one the middle is left out, as its end tells members apart.
+
+    A blank stands in front, so that letters drawn a little wider than measured are not cut.
+    """
+    half = (_LONGEST - 1) // 2
+    text = name if len(name) <= _LONGEST else name[:half] + "\N{HORIZONTAL ELLIPSIS}" + name[-half:]
+    return "\N{EN SPACE}" + text.replace("$", r"\$")
