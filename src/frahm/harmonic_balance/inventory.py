@@ -9,6 +9,7 @@ from frahm.harmonic_balance.search import Search, Track
 
 _SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
 
+NONE_FOUND = "No periodic response was found: Newton's method failed from every seed."
 _NEAR = 0.01  # of a frequency: how far from it a detached curve may be and still reach there
 
 
@@ -54,6 +55,17 @@ def not_proven(search: Search, at: float | None = None) -> tuple[str, ...]:
             " the first-harmonic solutions found do not add up to the degree of their equations."
         )
     return tuple(found)
+
+
+def unstable_unproven(search: Search) -> tuple[str, ...]:
+    """A sentence where unstable responses are known to lack at times: about other means than 0, of high harmonics."""
+    seeder = search.seeder
+    if seeder.table is None or (search.problem.odd and not seeder.buckled):
+        return ()
+    return (
+        "There may be further unstable responses: about other means than 0 such were met to which no first-harmonic"
+        " solution leads.",
+    )
 
 
 def _all_known(search: Search, at: float | None) -> bool:
