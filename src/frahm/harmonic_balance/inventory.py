@@ -41,7 +41,7 @@ def not_proven(search: Search, at: float | None = None) -> tuple[str, ...]:
     seeder, found = search.seeder, []
     lo, hi = (search.lo, search.hi) if at is None else ((1 - _NEAR) * at, (1 + _NEAR) * at)
     for W in search.undecided:
-        if lo <= W <= hi and not _all_known(search, at):
+        if lo <= W <= hi and not all_known(search, at):
             found.append(
                 f"Whether a small detached curve exists near {W:.6g} rad/s could not be told: it is born within"
                 f" {MARGIN:.0e} of the force, or its birth could not be located."
@@ -68,7 +68,7 @@ def unstable_unproven(search: Search) -> tuple[str, ...]:
     )
 
 
-def _all_known(search: Search, at: float | None) -> bool:
+def all_known(search: Search, at: float | None) -> bool:
     """Whether the equations of one harmonic are asked for at a frequency where all their solutions are known."""
     seeder = search.seeder
     proven = seeder.shared is not None or (seeder.spring is not None and seeder.table is None)

@@ -18,6 +18,7 @@ from frahm.harmonic_balance.found import Found
 from frahm.harmonic_balance.indices import missing
 from frahm.harmonic_balance.inventory import (
     NONE_FOUND,
+    all_known,
     inventory_text,
     not_proven,
     unfinished,
@@ -28,6 +29,7 @@ from frahm.harmonic_balance.linear import check_rest, is_linear, linear_exponent
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of
 from frahm.harmonic_balance.search import Search, Track, begin
+from frahm.harmonic_balance.starts import solve_seed
 from frahm.systems import System
 
 _NEIGHBOURHOOD = 0.12
@@ -102,6 +104,9 @@ def periodic_responses_of(
     if is_linear(system) or not np.any(system.forcing):
         return Found([_linear(system, frequency)], "A linear system has one periodic response.")
     search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
+    known = _of_one_harmonic(search, frequency)
+    if known is not None:
+        return known
     tracks = find_branches(search, at=frequency)
     found = responses_on(search, tracks, frequency)
     doubts = (
@@ -109,6 +114,19 @@ def periodic_responses_of(
         *(_missing(search, found) if found else (NONE_FOUND,)), *(unstable_unproven(search) if every else ()),
     )  # fmt: skip
     return Found(found, inventory_text(search), doubts)
+
+
+def _of_one_harmonic(search: Search, frequency: float) -> Found[PeriodicResponse] | None:
+    """The solutions of the equations of one harmonic where all of them are known at a frequency, or None."""
+    seeds = search.seeder.at(frequency, search.x_scale) if search.harmonics == 1 else []
+    if not seeds or not all_known(search, frequency):
+        return None
+    solved = [solve_seed(search, seed, True) for seed in seeds if set(seed.harmonics) == {1}]
+    if any(one is None for one in solved):
+        return None
+    found = [_response(search, True, X, H, frequency) for X, H in (one for one in solved if one is not None)]
+    found = sorted(found, key=lambda response: response.relative_amplitude)
+    return Found(found, "All solutions of the equations of one harmonic at this frequency.", tuple(search.unsearched))
 
 
 def _missing(search: Search, found: Sequence[PeriodicResponse]) -> tuple[str, ...]:
