@@ -287,7 +287,7 @@ def _region_of(system: System, curve: ResponseCurve, lo: float, hi: float) -> Re
 
 
 def _first_frequencies(curve: ResponseCurve, lo: float, hi: float, beside: float) -> list[float]:
-    """Frequencies to start with, ascending, none too near to another."""
+    """Frequencies to start with, ascending, none too near to another nor at a point where motions hardly settle."""
     count = max(_SPREAD, math.ceil(_SPREAD * math.log(hi / lo) / _BAND))
     wanted = [lo, hi, *np.linspace(lo, hi, count)[1:-1]]
     inside = (curve.frequency >= lo) & (curve.frequency <= hi)
@@ -297,6 +297,8 @@ def _first_frequencies(curve: ResponseCurve, lo: float, hi: float, beside: float
             if here.size:
                 wanted.append(float(curve.frequency[here[np.argmax(peaks[here])]]))
     within = [point for point in curve.special_points if lo <= point.frequency <= hi]
+    special = np.array([point.frequency for point in within])
+    wanted = [W for W in wanted if W in (lo, hi) or not np.any(np.abs(special - W) < 0.5 * beside * W)]
     for point in sorted(within, key=lambda point: -point.pipe_peak)[:_SPECIAL]:
         wanted += [point.frequency * (1 - beside), point.frequency * (1 + beside)]
     chosen: list[float] = []
