@@ -4,6 +4,8 @@ The ball is an ellipsoid |R (y - y*)| <= r in a norm adapted to the monodromy ma
 contracts at about its spectral radius. How large r may be is verified by sampling: states on shells from small up to r
 are carried over a few turns of the orbit by the exact equations, and the norm of every one of them must shrink. So the
 radius rests on samples, not on a bound.
+
+Linearisation by Magnus steps: Blanes et al. (2009), doi 10.1016/j.physrep.2008.11.001.
 """
 
 from __future__ import annotations

@@ -3,6 +3,8 @@
 A saddle-node is R = 0 with a singular Jacobian, written as the one scalar g of a bordered system; a Neimark-Sacker
 point is R = 0 with a singular Hill matrix at the exponent i nu, written as one complex scalar. The derivatives of g
 need second derivatives of the forces, which are taken on the same time samples. No force has a mixed one.
+
+Minimally extended (bordered) systems: Govaerts (2000), doi 10.1137/1.9780898719543.
 """
 
 from __future__ import annotations

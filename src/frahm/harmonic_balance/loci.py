@@ -1,4 +1,7 @@
-"""Curves of saddle-node and Neimark-Sacker points in two parameters."""
+"""Curves of saddle-node and Neimark-Sacker points in two parameters.
+
+Bifurcation tracking in harmonic balance: Detroux et al. (2015), doi 10.1016/j.cma.2015.07.017.
+"""
 
 from __future__ import annotations
 
