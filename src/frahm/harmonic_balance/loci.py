@@ -16,12 +16,14 @@ from frahm.continuation import ContinuationSettings, CurvePoint, between_points,
 from frahm.errors import Outcome
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import condense, unknowns
-from frahm.harmonic_balance.equations import FREQUENCY, Equations, FoldEquations, TorusEquations
+from frahm.harmonic_balance.equations import FREQUENCY, Equations
 from frahm.harmonic_balance.events import LocatedEvent
 from frahm.harmonic_balance.floquet import map_multipliers
+from frahm.harmonic_balance.fold_equations import FoldEquations
 from frahm.harmonic_balance.kernels import harmonics_of
 from frahm.harmonic_balance.orbits import output_series, peak_of
 from frahm.harmonic_balance.search import Search, Track, begin
+from frahm.harmonic_balance.torus_equations import TorusEquations
 from frahm.systems import System, parameter_value, with_parameters
 
 _SETTINGS = ContinuationSettings(first_step=5e-3, longest_step=0.06, angle=0.2, tolerance=1e-9, most_points=1500)

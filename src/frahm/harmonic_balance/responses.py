@@ -12,7 +12,7 @@ from frahm.arrays import Complexes, Floats, frozen
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import unstable_count
-from frahm.harmonic_balance.floquet import monodromy, variation_of
+from frahm.harmonic_balance.floquet import monodromy
 from frahm.harmonic_balance.following import lies_in_step, point_at
 from frahm.harmonic_balance.found import Found
 from frahm.harmonic_balance.indices import missing
@@ -30,6 +30,7 @@ from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of
 from frahm.harmonic_balance.search import Search, Track, begin
 from frahm.harmonic_balance.starts import solve_seed
+from frahm.harmonic_balance.variation import variation_of
 from frahm.systems import System
 
 _NEIGHBOURHOOD = 0.12
