@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from frahm.arrays import Floats
+from frahm.assessment.counting import counted_band
 from frahm.assessment.detail import detail_of, fatigue_section
-from frahm.assessment.fatigue import counted_band
 from frahm.case import Case
 from frahm.design.absorber import DesignedAbsorber, with_design
 from frahm.design.disturbance import Disturbance, disturbances

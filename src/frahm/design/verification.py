@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frahm.assessment.climate_mean import climate_mean
-from frahm.assessment.fatigue import counted_band
+from frahm.assessment.counting import counted_band
 from frahm.attractors import BESIDE, WorstCase, WorstMotion, joined, worst_over
 from frahm.case import Case
 from frahm.design.disturbance import Disturbance
