@@ -216,7 +216,7 @@ class Change:
     def block(self, s: complex, k: complex) -> Complexes:
         """Derivative of S(s) (r, r) at s = lam + ik Omega by this axis."""
         if self.stiffness is None:
-            return 1j * k * stiffness_at(self.problem, s)[1]
+            return 1j * k * stiffness_and_slope(self.problem, s)[1]
         return self.stiffness.at(s)[0]
 
     def applied(self, orbit: Orbit, v: Floats) -> Floats:
@@ -287,7 +287,7 @@ def of_first(samples: Floats, like: Floats) -> Floats:
     return out
 
 
-def stiffness_at(pb: Problem, s: complex) -> tuple[Complexes, Complexes, Complexes]:
+def stiffness_and_slope(pb: Problem, s: complex) -> tuple[Complexes, Complexes, Complexes]:
     """S(s), dS/ds (r, r) and the condensed force (r,)."""
     r = pb.M11.shape[0]
     S, dS = np.empty((r, r), complex), np.empty((r, r), complex)

@@ -36,6 +36,8 @@ from frahm.systems import System
 _NEIGHBOURHOOD = 0.12
 _FINE_GOAL = 1e-11
 _EXACT = 1e-6  # residual up to which a response has the multipliers of an exact one
+_SAME, _SAME_REST = 1e-6, 1e-9  # relative difference of states that are one, and of those near zero in relative peaks
+_TINY = 1e-300  # keeps what is compared with zero apart from it
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,7 +228,7 @@ def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> Periodi
 
 
 def _same(a: PeriodicResponse, b: PeriodicResponse) -> bool:
-    return bool(np.allclose(a.state, b.state, rtol=1e-6, atol=1e-9 * max(a.relative_peak, 1e-300)))
+    return bool(np.allclose(a.state, b.state, rtol=_SAME, atol=_SAME_REST * max(a.relative_peak, _TINY)))
 
 
 def _linear(system: System, W: float) -> PeriodicResponse:

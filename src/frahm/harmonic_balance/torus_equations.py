@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from frahm.arrays import Complexes, Floats
-from frahm.harmonic_balance.equations import Change, Equations, Orbit, of_first, stiffness_at
+from frahm.harmonic_balance.equations import Change, Equations, Orbit, of_first, stiffness_and_slope
 
 
 @dataclass
@@ -65,7 +65,7 @@ class TorusEquations(Equations):
     def _hill(self, orbit: Orbit, nu: float) -> tuple[Complexes, list[tuple[Complexes, Complexes]]]:
         """Hill's matrix at the exponent i nu, and (S, dS/ds) at every wave."""
         pb = orbit.problem
-        parts = [stiffness_at(pb, 1j * (nu + k * orbit.W))[:2] for k in self.waves]
+        parts = [stiffness_and_slope(pb, 1j * (nu + k * orbit.W))[:2] for k in self.waves]
         A = self._diagonal([S for S, _ in parts]) + self._slopes(orbit, orbit.derivatives[0])
         if pb.rates:
             A = A + self._slopes(orbit, orbit.derivatives[1]) * self._per_wave(1j * (nu + self.waves * orbit.W), orbit)
