@@ -185,15 +185,7 @@ def worst_case(
     """
     system = as_system(case_or_system)
     within = _range(case_or_system, system, detuning, frequency, wind)
-    settings: dict[str, Any] = {
-        "samples": check_count("samples", samples, at_most=MOST_SAMPLES),
-        "min_basin": check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
-        "seed": check_count("seed", seed, at_least=0),
-        "region": None if region is None else checked_region(system, region),
-        "periods": None if periods is None else check_count("periods", periods, at_most=1_000_000),
-        "workers": None if workers is None else check_count("workers", workers, at_most=1024),
-        "rms": rms,
-    }
+    settings = _checked(system, samples, min_basin, seed, region, periods, workers) | {"rms": rms}
     first = worst_over(system, within, **settings)
     if isinstance(case_or_system, System) or not within.moves:
         return first
@@ -201,6 +193,20 @@ def worst_case(
     beside = other_ranges(load_case(case_or_system))
     others = [worst_over(build_system(case), part, **settings) for case, part in beside]
     return worst_of((first, *others))
+
+
+def _checked(
+    system: System, samples: Any, min_basin: Any, seed: Any, region: Any, periods: Any, workers: Any
+) -> dict[str, Any]:
+    """Settings of the search as `worst_over` takes them."""
+    return {
+        "samples": check_count("samples", samples, at_most=MOST_SAMPLES),
+        "min_basin": check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
+        "seed": check_count("seed", seed, at_least=0),
+        "region": None if region is None else checked_region(system, region),
+        "periods": None if periods is None else check_count("periods", periods, at_most=1_000_000),
+        "workers": None if workers is None else check_count("workers", workers, at_most=1024),
+    }
 
 
 def worst_of(parts: Sequence[WorstCase]) -> WorstCase:

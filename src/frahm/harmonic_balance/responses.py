@@ -12,7 +12,7 @@ from frahm.arrays import Complexes, Floats, frozen
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import unstable_count
-from frahm.harmonic_balance.floquet import monodromy, variation_of
+from frahm.harmonic_balance.floquet import monodromy
 from frahm.harmonic_balance.following import lies_in_step, point_at
 from frahm.harmonic_balance.found import Found
 from frahm.harmonic_balance.indices import missing
@@ -30,11 +30,14 @@ from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of
 from frahm.harmonic_balance.search import Search, Track, begin
 from frahm.harmonic_balance.starts import solve_seed
+from frahm.harmonic_balance.variation import variation_of
 from frahm.systems import System
 
 _NEIGHBOURHOOD = 0.12
 _FINE_GOAL = 1e-11
 _EXACT = 1e-6  # residual up to which a response has the multipliers of an exact one
+_SAME, _SAME_REST = 1e-6, 1e-9  # relative difference of states that are one, and of those near zero in relative peaks
+_TINY = 1e-300  # keeps what is compared with zero apart from it
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,7 +228,7 @@ def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> Periodi
 
 
 def _same(a: PeriodicResponse, b: PeriodicResponse) -> bool:
-    return bool(np.allclose(a.state, b.state, rtol=1e-6, atol=1e-9 * max(a.relative_peak, 1e-300)))
+    return bool(np.allclose(a.state, b.state, rtol=_SAME, atol=_SAME_REST * max(a.relative_peak, _TINY)))
 
 
 def _linear(system: System, W: float) -> PeriodicResponse:
