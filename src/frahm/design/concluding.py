@@ -36,7 +36,7 @@ def concluded(work: DesignWork, interrupted: bool) -> DesignStudy:
         comparison=rivals,
         errors=work.settings.errors,
         error_table=found.table,
-        error_verified=found.sure,
+        error_verified={name: tuple(not cell for cell in row) for name, row in found.table_doubts.items()},
         trade_off=tuple(found.trade_off),
         with_margin=found.with_margin.pipe_peak if found.with_margin else math.nan,
         hardware=found.hardware,
@@ -64,10 +64,10 @@ def _doubts(work: DesignWork, rivals: Sequence[Rival], interrupted: bool) -> tup
     if found.built is not None:
         doubts += [f"With the exact force of transverse springs: {sentence}" for sentence in found.built.unverified]
     doubts += [
-        f"Table of frequency errors: {name} at {100 * (error - 1):+.3g} % is unverified."
-        for name, sure in found.sure.items()
-        for error, holds in zip(work.settings.errors, sure, strict=True)
-        if not holds
+        f"Table of frequency errors: {name} at {100 * (error - 1):+.3g} % is unverified: {cell[0]}"
+        for name, row in found.table_doubts.items()
+        for error, cell in zip(work.settings.errors, row, strict=True)
+        if cell
     ]
     if interrupted:
         doubts.append("Interrupted: the comparison is not complete.")

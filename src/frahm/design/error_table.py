@@ -32,4 +32,4 @@ def error_table(work: DesignWork) -> None:
 
         rows = in_threads(row, work.settings.errors)
         work.found.table[name] = tuple(row.pipe_peak for row in rows)
-        work.found.sure[name] = tuple(row.verified for row in rows)
+        work.found.table_doubts[name] = tuple(row.unverified for row in rows)

@@ -40,7 +40,7 @@ class Found:
     rivals: dict[str, Rival] = field(default_factory=dict)
     lasting: dict[str, xr.Dataset] = field(default_factory=dict)
     table: dict[str, tuple[float, ...]] = field(default_factory=dict)
-    sure: dict[str, tuple[bool, ...]] = field(default_factory=dict)
+    table_doubts: dict[str, tuple[tuple[str, ...], ...]] = field(default_factory=dict)
     trade_off: list[MarginPoint] = field(default_factory=list)
     with_margin: Verification | None = None
     hardware: Hardware | None = None
