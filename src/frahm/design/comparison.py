@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from frahm.case import Case
 from frahm.design.absorber import absorber_of
 from frahm.design.completing import fatigue_row, worst_motion
 from frahm.design.exact import conditions_of, exact_birth
 from frahm.design.finalists import FAR
 from frahm.design.work import DesignWork, rival_of
+from frahm.response.own_lift import own_lift
 
 
 def no_absorber(work: DesignWork) -> None:
@@ -39,7 +41,18 @@ def whole_comparison(work: DesignWork) -> None:
         case = work.case_of(rival)
         nominal = work.nominal.get(name if name in ("none", "case") else rival.design, ())
         worst, work.found.lasting[name] = worst_motion(case, work.problem, nominal)
+        if work.found.best is not None and name == work.found.best.name:
+            worst = replace(worst, unverified=(*worst.unverified, *_exceeded(work, case, worst.pipe_peak)))
         whole = replace(rival, worst=worst, fatigue=fatigue_row(case))
         work.found.rivals[name] = whole
         if work.found.best is not None and name == work.found.best.name:
             work.found.best = whole
+
+
+def _exceeded(work: DesignWork, case: Case, worst: float) -> tuple[str, ...]:
+    """Where one lift was asked about: a sentence if winds with their own move the pipe with the best design more.
+
+    The others are there to be compared with under what was asked.
+    """
+    found = own_lift(case, work.problem.within, worst)
+    return (found.text,) if found is not None and found.exceeds else ()

@@ -67,7 +67,7 @@ def _doubts(work: DesignWork, rivals: Sequence[Rival], interrupted: bool) -> tup
         f"Table of frequency errors: {name} at {100 * (error - 1):+.3g} % is unverified: {cell[0]}"
         for name, row in found.table_doubts.items()
         for error, cell in zip(work.settings.errors, row, strict=True)
-        if cell
+        if cell and not any(cell[0] in doubt for doubt in doubts)
     ]
     if interrupted:
         doubts.append("Interrupted: the comparison is not complete.")
