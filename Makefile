@@ -2,22 +2,29 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+RUNS := $(VENV)/.runs
 STAMP := $(VENV)/.set-up
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 .PHONY: setup run reproduce test bounds fuzz attack lint types bench docs scatter-study where-a-sink-wins examples validation clean
 
 setup: $(STAMP)
 
-$(STAMP): pyproject.toml constraints.txt
+$(RUNS): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit("Python 3.11 or newer is needed, this is " + sys.version.split()[0]) if sys.version_info < (3, 11) else None'
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev,docs,app,cluster,pdf,uq]'
+	$(PIP) --editable '.[app]'
 	touch $@
 
-run: setup
+# what tests, lint and documentation need as well
+$(STAMP): $(RUNS)
+	$(PIP) --editable '.[dev,docs,app,cluster,pdf,uq]'
+	touch $@
+
+run: $(RUNS)
 	$(BIN)/frahm run jacket-pipe --out out/jacket-pipe
 
-reproduce: setup
+reproduce: $(RUNS)
 	$(BIN)/frahm reproduce --out out/reproduce
 
 test: setup

@@ -96,7 +96,7 @@ def test_what_is_in_a_ball_settles_though_another_orbit_passes_through_large_one
 
 
 def test_motions_that_have_not_arrived_at_a_torus_do_not_leave_it():
-    """One of ten motions passes near the boundary of an orbit's basin first: four of sixteen started on it end there."""
+    """One of ten motions passes near the boundary of an orbit's basin: four of sixteen started on it end there."""
     one = drawn(58)
     strobe = stroboscope(one.system, one.frequency)
     near = np.array([

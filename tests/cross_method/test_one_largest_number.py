@@ -16,7 +16,7 @@ import frahm
 from frahm import readable
 from frahm.analysis import analyse, load_analysis, save_analysis
 from frahm.analysis.largest import FIXED_LIFT
-from frahm.report import tables, write_report
+from frahm.report import check_tables, write_report
 from searching import at_most
 
 TRANSIENT = 1e-3  # a motion called periodic may still hold so much of its start
@@ -119,7 +119,7 @@ def test_the_worst_is_the_largest_number_of_its_folder_and_the_same_everywhere(c
         for name, peak in columns_of_figures(folder, results).items():
             assert peak <= worst * (1 + 1e-9), name
         analysis = load_analysis(folder)
-        for cells in tables.comparison_rows(analysis):
+        for cells in check_tables.comparison_rows(analysis):
             assert float(cells[1]) <= 1e3 * worst * (1 + 1e-5)
 
 

@@ -162,11 +162,11 @@ def test_an_interrupted_worst_case_is_not_verified(monkeypatch):
 
     original, calls = room.attractors_from, [0]
 
-    def attractors_from(*arguments):
+    def attractors_from(*arguments, **more):
         calls[0] += 1
         if calls[0] > 3:
             raise KeyboardInterrupt
-        return original(*arguments)
+        return original(*arguments, **more)
 
     monkeypatch.setattr(room, "attractors_from", attractors_from)
     worst = frahm.worst_case(CASE, detuning=(-0.2, -0.1), samples=8)

@@ -65,14 +65,14 @@ def test_an_absorber_without_a_spring_is_no_design():
 def test_an_interrupted_design_gives_the_best_so_far_and_says_so(tmp_path, monkeypatch):
     from frahm.design import designing
 
-    whole = designing._Designing.designed
+    whole = designing.best_of_family
 
-    def stop_after_the_first(self, family):
+    def stop_after_the_first(work, family):
         if family != "tuned":
             raise KeyboardInterrupt
-        return whole(self, family)
+        return whole(work, family)
 
-    monkeypatch.setattr(designing._Designing, "designed", stop_after_the_first)
+    monkeypatch.setattr(designing, "best_of_family", stop_after_the_first)
     done = design(tmp_path, "--family", "tuned", "--samples", 4)
     assert done.exit_code == 130
     assert (tmp_path / "out" / "best.yaml").is_file()

@@ -13,7 +13,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from frahm.absorbers.laws import Law, TransverseSprings
+from frahm.absorbers.law import Law
+from frahm.absorbers.transverse_springs import TransverseSprings
 from frahm.arrays import Floats
 from frahm.compiled import kernel
 from frahm.lanes import hyperbolic_tangent, larger, parameter, root

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from frahm.absorbers.laws import Law, Polynomial, TransverseSprings
+from frahm.absorbers.law import Law
+from frahm.absorbers.polynomial_laws import Polynomial
+from frahm.absorbers.transverse_springs import TransverseSprings
 from frahm.arrays import Floats, frozen
 from frahm.errors import check_number
 

@@ -11,6 +11,7 @@ import numpy as np
 from frahm import readable
 from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
 from frahm.harmonic_balance import is_linear
+from frahm.response.own_lift import OwnLift
 
 Row = dict[str, Any]
 _SAME = 1.01  # a motion larger by less is as large
@@ -100,15 +101,8 @@ def _fixed_lift(work: Work, worst: float) -> tuple[Check, ...]:
     over = work.done.results.get("response_over_wind")
     if work.range.over_wind or over is None:
         return ()
-    peak, speed = over["pipe_peak_max_with"], over["wind_speed_with"]
-    detail = (
-        f"Over the winds that shed in the window, each with its own lift, the largest stable response is"
-        f" {readable.length(peak)} (at {readable.speed(speed)}), against {readable.length(worst)} with the lift of"
-        f" {readable.speed(work.case.wind.speed)} at every frequency."
-    )
-    good = not peak > _SAME * worst
-    hint = "" if good else " Leave out analysis.detuning, so that the lift follows the wind."
-    return (Check(FIXED_LIFT, PASS if good else UNVERIFIED, detail + hint),)
+    found = OwnLift(over["pipe_peak_max_with"], over["wind_speed_with"], worst, work.case.wind.speed)
+    return (Check(FIXED_LIFT, UNVERIFIED if found.exceeds else PASS, found.text),)
 
 
 def _from_motions(work: Work) -> list[Row]:

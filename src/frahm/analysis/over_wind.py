@@ -10,11 +10,12 @@ from frahm.analysis.section import Section, Work
 from frahm.errors import ParameterError
 from frahm.loads import wind_excitation
 from frahm.response import frequency_response
+from frahm.response.own_lift import winds_of_window
 
 
 def over_wind(work: Work) -> Section:
     """Every periodic response over the wind speeds of the range of operation, with and without absorbers."""
-    case, window = work.case, _speeds(work)
+    case, window = work.case, winds_of_window(work.case, work.range)
     if window is None or not np.any(work.system.forcing):
         return Section(notes=("No response over the wind: the window of detuning belongs to no one range of speeds.",))
     try:
@@ -29,15 +30,3 @@ def over_wind(work: Work) -> Section:
         found[f"wind_speed_{name}"] = float(law.speed(frequency, *window))
     data = {"response_over_wind": curve.to_dataset(), "without_absorber_over_wind": bare.to_dataset()}
     return Section(results={"response_over_wind": found}, data=data, unverified=curve.unverified)
-
-
-def _speeds(work: Work) -> tuple[float, float] | None:
-    """Wind speeds [m/s] of the range, or those that shed at the edges of its window of detuning, if one range does."""
-    if work.range.wind is not None:
-        return work.range.wind
-    law = wind_excitation(work.case)
-    ends = [law.speeds_of(W) for W in work.range.frequency]
-    if any(found.size != 1 for found in ends):
-        return None
-    lo, hi = (float(found[0]) for found in ends)
-    return (lo, hi) if lo < hi else None

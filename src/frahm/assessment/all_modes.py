@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from frahm.assessment.counting import Counting, counted_band
 from frahm.assessment.damage import FatigueDamage
-from frahm.assessment.fatigue import counted_band, damage_beside
+from frahm.assessment.fatigue import damage_beside
 from frahm.assessment.verdict import doubts_of_the_rest
 from frahm.case import Case
 from frahm.loads import operating_range, other_ranges
@@ -25,7 +26,7 @@ def damage_of_modes(case: Case) -> tuple[FatigueDamage, ...]:
     others = () if named or not operating_range(case).moves else other_ranges(case)
     wanted = [(case, counted_band(case)), *((other, part.winds) for other, part in others if part.winds is not None)]
     bands = [band for _, band in wanted]
-    first, *rest = (damage_beside(one, bands, wind=band) for one, band in wanted)
+    first, *rest = (damage_beside(one, bands, Counting.of(one, wind=band)) for one, band in wanted)
     doubts = doubts_of_the_rest((first, *rest))
     return (dataclasses.replace(first, unverified=(*first.unverified, *doubts)), *rest)
 

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frahm.arrays import Floats
+from frahm.assessment.counting import counted_band
 from frahm.assessment.detail import detail_of, fatigue_section
-from frahm.assessment.fatigue import counted_band, surveyed
+from frahm.assessment.fatigue import surveyed
 from frahm.assessment.linear_damage import LinearPipe, linear_damage, linear_pipe
 from frahm.assessment.verdict import unsettled_winds
 from frahm.assessment.wind_bins import first_edges, middles, refined

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from frahm.arrays import Floats, frozen
+from frahm.assessment.counting import CALM, STORM, Counting, Progress
 from frahm.assessment.damage import FatigueDamage
 from frahm.assessment.detail import Detail, detail_of, fatigue_section, other_places
 from frahm.assessment.linear_damage import LinearPipe, linear_damage, linear_pipe
@@ -17,25 +18,20 @@ from frahm.assessment.verdict import doubts_of, doubts_of_the_rest, notes_of
 from frahm.assessment.wind_bins import first_edges, gaps, interpolated_damage, middles, refined
 from frahm.assessment.wind_survey import WindSurvey
 from frahm.case import Case, load_case
-from frahm.errors import check_count
 from frahm.harmonic_balance import is_linear
 from frahm.loads import (
     WindClimate,
     lock_in_band,
-    operating_range,
     persistence,
-    speed_window,
     wind_climate,
     wind_excitation,
 )
 from frahm.systems import build_system
 
-_CALM, _STORM = 1e-3, 200.0  # speeds between which wind is looked for [m/s]
 _FIRST = 0.5  # share of the bins laid out before it is known where the damage changes
 _LARGER = 1.01  # how much larger a range elsewhere along the pipe must be to count the damage there, too
 _PLACES = 3  # sections tried
 _OUTSIDE = 200  # panels for the winds outside the band
-Progress = Callable[[int, int], None]
 
 
 def fatigue_damage(
@@ -84,32 +80,18 @@ def fatigue_damage(
         If the case has no climate or no detail, or for bad input. What could not be settled the result names.
     """
     case = load_case(case)
-    found = damage_beside(case, (), bins, wind=wind, samples=samples, seed=seed, workers=workers, progress=progress)
+    counting = Counting.of(case, bins, wind=wind, samples=samples, seed=seed, workers=workers, progress=progress)
+    found = damage_beside(case, (), counting)
     return dataclasses.replace(found, unverified=(*found.unverified, *doubts_of_the_rest((found,))))
 
 
-def damage_beside(
-    case: Case,
-    others: Sequence[tuple[float, float]],
-    bins: int | None = None,
-    *,
-    wind: tuple[float, float] | None = None,
-    samples: int | None = None,
-    seed: int | None = None,
-    workers: int | None = None,
-    progress: Progress | None = None,
-) -> FatigueDamage:
+def damage_beside(case: Case, others: Sequence[tuple[float, float]], counting: Counting) -> FatigueDamage:
     """`fatigue_damage` where winds of other bands [m/s] are counted elsewhere, and nothing said of those nobody counts.
 
     `doubts_of_the_rest` of all parts together says it.
     """
-    fatigue, climate = fatigue_section(case), wind_climate(case)
-    count = check_count("bins", fatigue.bins if bins is None else bins, at_least=4, at_most=2000)
-    samples = check_count("samples", fatigue.samples if samples is None else samples, at_most=100_000)
-    seed = check_count("seed", case.analysis.seed if seed is None else seed, at_least=0)
-    workers = None if workers is None else check_count("workers", workers, at_most=1024)
-    band = counted_band(case, wind)
-    survey = WindSurvey(case, detail_of(case), samples, seed, workers, _seen(progress, count))
+    climate, band, count = wind_climate(case), counting.band, counting.bins
+    survey = WindSurvey(case, detail_of(case), counting.samples, counting.seed, counting.workers, counting.seen)
     bare = linear_pipe(case.without_absorbers())
     resonances = [] if bare is None else [speed for speed, _ in bare.resonances(*band)]
     if is_linear(build_system(case)) or bare is None:
@@ -131,26 +113,6 @@ def surveyed(
     _keep(survey, edges)
     survey.carry()
     return _at_the_worst_place(survey, survey.case, climate, edges), edges
-
-
-def _seen(progress: Progress | None, count: int) -> Callable[[int], None] | None:
-    return None if progress is None else lambda done: progress(min(done, count), count)
-
-
-def counted_band(case: Case, given: tuple[float, float] | None = None) -> tuple[float, float]:
-    """Wind speeds that are counted [m/s]: those given, those of the case, or those of its range of operation."""
-    if given is None and case.fatigue is not None:
-        given = case.fatigue.wind_speeds
-    if given is not None:
-        return speed_window(case, given)
-    within = operating_range(case)
-    if within.winds is not None:
-        return within.winds
-    excitation = wind_excitation(case)
-    low, high = max(excitation.speed_range[0], _CALM), min(excitation.speed_range[1], _STORM)
-    found = excitation.speed(np.array(within.frequency), low, high)
-    ends = np.where(np.isnan(found), [low, high], found)
-    return speed_window(case, (float(ends[0]), float(ends[1])))
 
 
 def _loss(survey: WindSurvey, climate: WindClimate, edges: Floats) -> Floats:
@@ -286,7 +248,7 @@ def _outside(
     """Damage by all winds in none of the bands counted, in closed form, and the wind [m/s] that does most of it."""
     if pipe is None or not pipe.decays:
         return (0.0 if pipe is None else math.inf), math.nan
-    low, high = max(pipe.excitation.speed_range[0], _CALM), min(pipe.excitation.speed_range[1], _STORM)
+    low, high = max(pipe.excitation.speed_range[0], CALM), min(pipe.excitation.speed_range[1], STORM)
     total, worst, where = 0.0, 0.0, math.nan
     for first, last in gaps(low, high, counted):
         ends = np.linspace(first, last, _OUTSIDE)

@@ -1,4 +1,8 @@
-"""What a long-term motion is to a designer: `Attractor`, and the set of them at one excitation frequency."""
+"""What a long-term motion is to a designer: `Attractor`, and the set of them at one excitation frequency.
+
+Share of a region as the stability of an attractor: Menck et al. (2013), doi 10.1038/nphys2516. Intervals: Clopper and
+Pearson (1934), doi 10.1093/biomet/26.4.404; of rates, Garwood (1936), doi 10.1093/biomet/28.3-4.437.
+"""
 
 from __future__ import annotations
 

@@ -29,6 +29,9 @@ _CANARD = (
 )
 CRITICAL = ("fold of cycles", "period-doubling", "torus")
 _NEAR = 5e-3  # residual share of a test function at which a point counts as located
+_AHEAD = 1e-4  # of the scaled unknowns along a branch: the direction on new nodes is a difference over as much
+_AT_EDGE, _AT_SPECIAL = 1e-9, 1e-7  # along a branch, in scaled unknowns: where it leaves the window, and is special
+_ALIKE, _ROUNDING = 0.6, 1e-6  # off the mean of two neighbours, in gaps between them: a cycle between them is theirs
 
 
 class CyclePoint(NamedTuple):
@@ -148,7 +151,7 @@ def _renewed(shooting: Shooting, point: CurvePoint, scales: Scales) -> tuple[Sho
     _, _, W = shooting.unpack(point.y)
     durations = shooting.durations_anew(point.y)
     new = Shooting(shooting.slow, scales, shooting.nodes_at(point.y, durations), durations, W)
-    beside = point.y + 1e-4 * point.tangent
+    beside = point.y + _AHEAD * point.tangent
     _, stretched, W_beside = shooting.unpack(beside)
     stretched = durations * np.sum(stretched) / np.sum(durations)
     ahead = new.pack(shooting.nodes_at(beside, durations), stretched, W_beside)
@@ -169,7 +172,7 @@ def _take(
     if not window[0] <= W <= window[1]:
         edge = window[0] if window[0] > W else window[1]
         if a is not None:
-            at = between_points(shooting.residual, a, b, lambda p: shooting.unpack(p.y)[2] - edge, 1e-9)
+            at = between_points(shooting.residual, a, b, lambda p: shooting.unpack(p.y)[2] - edge, _AT_EDGE)
             cycle = None if at is None else shooting.cycle(at.y)
             if cycle is not None:
                 way.points.append(CyclePoint(cycle, ""))
@@ -201,7 +204,7 @@ def _add_special(way: _Way, shooting: Shooting, a: CurvePoint, b: CurvePoint, ne
         test = partial(_test, shooting, index)
         if test(a) * test(b) >= 0:
             continue
-        at = between_points(shooting.residual, a, b, test, 1e-7)
+        at = between_points(shooting.residual, a, b, test, _AT_SPECIAL)
         cycle = None if at is None else shooting.cycle(at.y)
         if cycle is not None and (index == 0 or _is_critical(index, cycle.multipliers)):
             way.points.append(CyclePoint(cycle, name))
@@ -245,7 +248,7 @@ def _same(new: SlowCycle, old: SlowCycle, first: SlowCycle) -> bool:
         return False
     looks = np.array([[c.period, *c.pipe, *c.relative] for c in (new, old, first)])
     gap = np.abs(looks[0] - looks[1])
-    return bool(np.all(np.abs(looks[2] - looks[:2].mean(axis=0)) <= 0.6 * gap + 1e-6 * looks[2]))
+    return bool(np.all(np.abs(looks[2] - looks[:2].mean(axis=0)) <= _ALIKE * gap + _ROUNDING * looks[2]))
 
 
 def _gave_up(outcome: Outcome) -> End:

@@ -1,4 +1,7 @@
-"""What a motion that never repeats is like: its beat, its base frequencies, and whether neighbours stay together."""
+"""What a motion that never repeats is like: its beat, its base frequencies, and whether neighbours stay together.
+
+Largest exponent from renormalised neighbours: Benettin et al. (1980), doi 10.1007/BF02128236.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,8 @@ from frahm.attractors.stroboscope import Stroboscope
 
 _APART = 1e-7  # distance of neighbours, in sizes of the motion
 _STRETCH, _SKIPPED, _STRETCHES = 12, 8, 60  # periods between renormalisations, how many are skipped and counted
-_FINE = 1e-11
+_FINE = 1e-11  # tolerance of motions whose growth apart is measured
+_LEAST_APART = 1e-9  # share of `_APART`: neighbours are never taken for nearer, so that growth has a logarithm
 _LEAST_BEATS = 5  # within the window
 _CHAOTIC = 2e-3  # least growth per period that counts as chaos: neighbours e times apart within 500 periods
 
@@ -43,7 +47,7 @@ def lyapunov(strobe: Stroboscope, states: Floats) -> Exponent:
         both = strobe.run(both, _STRETCH, tolerance=_FINE).states
         states, apart = both[: len(states)], (both[len(states) :] - both[: len(states)]) / size
         distance = np.linalg.norm(apart, axis=1, keepdims=True)
-        distance = np.maximum(distance, 1e-9 * _APART)
+        distance = np.maximum(distance, _LEAST_APART * _APART)
         directions = apart * _APART / distance
         if stretch >= 0:
             growth[stretch] = np.log(distance[:, 0] / _APART) / _STRETCH

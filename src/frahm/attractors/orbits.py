@@ -4,6 +4,8 @@ The ball is an ellipsoid |R (y - y*)| <= r in a norm adapted to the monodromy ma
 contracts at about its spectral radius. How large r may be is verified by sampling: states on shells from small up to r
 are carried over a few turns of the orbit by the exact equations, and the norm of every one of them must shrink. So the
 radius rests on samples, not on a bound.
+
+Linearisation by Magnus steps: Blanes et al. (2009), doi 10.1016/j.physrep.2008.11.001.
 """
 
 from __future__ import annotations
@@ -32,6 +34,10 @@ _WELL_CONDITIONED, _BLIND = 1e6, 1e12  # condition numbers: of eigenvectors that
 _SMALLEST = 1e-6  # radius, in sizes of the orbit, that the linear theory alone may claim
 _DIFFERENCE = 1e-5  # of the size of a motion: steps of central differences, of relative error about 1e-7 here
 _FIRST_STEPS = 0.5  # in sizes of the motion: of Newton's method; later ones must shrink
+_LAST_STEP, _NEWTON_STEPS = 1e-9, 8  # in sizes of the motion: at which Newton's method has ended, and after how many
+_TIGHT = 1e-12  # tolerance of motions that derivatives are taken of
+_LEAST_SIZE = 1e-3  # of the displacement of the masses by the force alone: a motion is not taken for smaller
+_INNER = 1e-12  # off the ends of [0, 1], where the normal distribution has no quantile
 _SETTLED = 1e-4  # in sizes of the orbit: how far off the tolerance may leave a motion that has settled
 _ONE = 1e-6  # in sizes of the orbit: states of refined orbits nearer than this are one state
 
@@ -167,9 +173,9 @@ def refined(strobe: Stroboscope, state: Floats, multiple: int) -> tuple[Floats, 
     size = orbit_size(strobe, state[None])
     steps = _DIFFERENCE * np.diag(size)
     change = np.inf
-    for turn in range(8):
+    for turn in range(_NEWTON_STEPS):
         around = np.concatenate([state[None], state + steps, state - steps])
-        turned = strobe.run(around, multiple, tolerance=1e-12)
+        turned = strobe.run(around, multiple, tolerance=_TIGHT)
         if np.any(turned.codes):
             return None
         ahead, behind = np.split(turned.states[1:], 2)
@@ -180,7 +186,7 @@ def refined(strobe: Stroboscope, state: Floats, multiple: int) -> tuple[Floats, 
             return None
         last, change = change, float(np.max(np.abs(step) / size))
         state = state - step
-        if change < 1e-9:
+        if change < _LAST_STEP:
             return state, Phi
         if not change < (_FIRST_STEPS if turn < 2 else last):
             return None
@@ -191,7 +197,7 @@ def orbit_size(strobe: Stroboscope, states: Floats) -> Floats:
     """Size (2n,) of displacements [m] and velocities [m/s] of motions through the states."""
     x = max(float(np.max(np.abs(states[:, 0::2]))), float(np.max(np.abs(states[:, 1::2]))) / strobe.frequency)
     push = float(np.max(np.abs(np.linalg.solve(strobe.system.mass, strobe.system.forcing)))) / strobe.frequency**2
-    x = max(x, 1e-3 * push) or 1.0
+    x = max(x, _LEAST_SIZE * push) or 1.0
     return np.tile([x, x * strobe.frequency], strobe.system.size)
 
 
@@ -231,7 +237,7 @@ def _turn(strobe: Stroboscope, state: Floats, multiple: int) -> _Turn | None:
         return None
     history = integrate(
         system, frequency=strobe.frequency, periods=multiple, initial_state=state,
-        samples_per_period=per_period, tolerance=1e-12,
+        samples_per_period=per_period, tolerance=_TIGHT,
     )  # fmt: skip
     if not history.outcome.ok:
         return None
@@ -341,5 +347,5 @@ def _shrinking(T: Complexes, left: float) -> Floats:
 def _directions(dimension: int) -> Floats:
     """Unit vectors (count, dimension) spread evenly over the sphere."""
     points = qmc.Sobol(dimension, scramble=True, seed=0).random(_DIRECTIONS)
-    vectors = norm.ppf(np.clip(points, 1e-12, 1 - 1e-12))
+    vectors = norm.ppf(np.clip(points, _INNER, 1 - _INNER))
     return frozen(vectors / np.linalg.norm(vectors, axis=1, keepdims=True))

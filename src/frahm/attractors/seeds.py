@@ -1,4 +1,7 @@
-"""Initial states worth trying besides a sample: rest, every periodic response, the jumps of the slow manifold."""
+"""Initial states worth trying besides a sample: rest, every periodic response, the jumps of the slow manifold.
+
+Jumps of the slow invariant manifold: Starosvetsky and Gendelman (2008), doi 10.1016/j.physd.2008.01.019.
+"""
 
 from __future__ import annotations
 

@@ -3,6 +3,8 @@
 The unknowns y are the states of M nodes along the cycle, the times between them, and Omega, all scaled. Nodes are set
 so that an arc between two of them holds the same share of steps and time, so that neither the fast jumps of a
 relaxation cycle nor its slow passages amplify an error by much within an arc.
+
+Multiple shooting for cycles: Kuznetsov (2004), doi 10.1007/978-1-4757-3978-7, chapter 10.
 """
 
 from __future__ import annotations

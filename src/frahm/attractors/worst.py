@@ -185,15 +185,7 @@ def worst_case(
     """
     system = as_system(case_or_system)
     within = _range(case_or_system, system, detuning, frequency, wind)
-    settings: dict[str, Any] = {
-        "samples": check_count("samples", samples, at_most=MOST_SAMPLES),
-        "min_basin": check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
-        "seed": check_count("seed", seed, at_least=0),
-        "region": None if region is None else checked_region(system, region),
-        "periods": None if periods is None else check_count("periods", periods, at_most=1_000_000),
-        "workers": None if workers is None else check_count("workers", workers, at_most=1024),
-        "rms": rms,
-    }
+    settings = _checked(system, samples, min_basin, seed, region, periods, workers) | {"rms": rms}
     first = worst_over(system, within, **settings)
     if isinstance(case_or_system, System) or not within.moves:
         return first
@@ -201,6 +193,20 @@ def worst_case(
     beside = other_ranges(load_case(case_or_system))
     others = [worst_over(build_system(case), part, **settings) for case, part in beside]
     return worst_of((first, *others))
+
+
+def _checked(
+    system: System, samples: Any, min_basin: Any, seed: Any, region: Any, periods: Any, workers: Any
+) -> dict[str, Any]:
+    """Settings of the search as `worst_over` takes them."""
+    return {
+        "samples": check_count("samples", samples, at_most=MOST_SAMPLES),
+        "min_basin": check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
+        "seed": check_count("seed", seed, at_least=0),
+        "region": None if region is None else checked_region(system, region),
+        "periods": None if periods is None else check_count("periods", periods, at_most=1_000_000),
+        "workers": None if workers is None else check_count("workers", workers, at_most=1024),
+    }
 
 
 def worst_of(parts: Sequence[WorstCase]) -> WorstCase:
@@ -287,7 +293,7 @@ def _region_of(system: System, curve: ResponseCurve, lo: float, hi: float) -> Re
 
 
 def _first_frequencies(curve: ResponseCurve, lo: float, hi: float, beside: float) -> list[float]:
-    """Frequencies to start with, ascending, none too near to another."""
+    """Frequencies to start with, ascending, none too near to another nor at a point where motions hardly settle."""
     count = max(_SPREAD, math.ceil(_SPREAD * math.log(hi / lo) / _BAND))
     wanted = [lo, hi, *np.linspace(lo, hi, count)[1:-1]]
     inside = (curve.frequency >= lo) & (curve.frequency <= hi)
@@ -297,6 +303,8 @@ def _first_frequencies(curve: ResponseCurve, lo: float, hi: float, beside: float
             if here.size:
                 wanted.append(float(curve.frequency[here[np.argmax(peaks[here])]]))
     within = [point for point in curve.special_points if lo <= point.frequency <= hi]
+    special = np.array([point.frequency for point in within])
+    wanted = [W for W in wanted if W in (lo, hi) or not np.any(np.abs(special - W) < 0.5 * beside * W)]
     for point in sorted(within, key=lambda point: -point.pipe_peak)[:_SPECIAL]:
         wanted += [point.frequency * (1 - beside), point.frequency * (1 + beside)]
     chosen: list[float] = []

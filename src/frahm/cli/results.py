@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from frahm.analysis import Analysis
-from frahm.report import tables
+from frahm.report import check_tables, motion_tables, response_tables
 
 
 def results_text(analysis: Analysis) -> str:
@@ -18,20 +18,20 @@ def _lines(analysis: Analysis) -> Iterator[str]:
     yield f"{case.name}: {case.title}" if case.title else case.name
     yield ""
     yield analysis.verdict
-    points = tables.special_point_rows(analysis)
+    points = response_tables.special_point_rows(analysis)
     if points:
         yield "\nSpecial points"
-        yield from _columns(tables.special_point_head(analysis), points)
-    motions = tables.motion_rows(analysis)
+        yield from _columns(response_tables.special_point_head(analysis), points)
+    motions = motion_tables.motion_rows(analysis)
     if motions:
         yield "\nMotions from rest"
-        yield from _columns(tables.motion_head(analysis), motions)
-    attractors = tables.attractor_rows(analysis)
+        yield from _columns(motion_tables.motion_head(analysis), motions)
+    attractors = motion_tables.attractor_rows(analysis)
     if attractors:
         yield "\nAttractors at the design wind"
-        yield from _columns(tables.ATTRACTOR_HEAD, attractors)
+        yield from _columns(motion_tables.ATTRACTOR_HEAD, attractors)
     yield "\nChecks"
-    for name, _, sign, detail in tables.check_rows(analysis):
+    for name, _, sign, detail in check_tables.check_rows(analysis):
         yield f"  {sign:<13} {name}. {detail}"
     if analysis.unverified:
         yield "\nUnverified"

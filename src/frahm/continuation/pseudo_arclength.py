@@ -1,4 +1,7 @@
-"""Pseudo-arclength continuation of residual(y) = 0 with one unknown more than equations, as an iterator."""
+"""Pseudo-arclength continuation of residual(y) = 0 with one unknown more than equations, as an iterator.
+
+Allgower and Georg (2003), doi 10.1137/1.9780898719154.
+"""
 
 from __future__ import annotations
 

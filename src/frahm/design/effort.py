@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from frahm.case import Case
+from frahm.design.families import in_order
 from frahm.design.problem import Problem
 from frahm.design.settings import settings_for
 
@@ -27,8 +28,7 @@ def step_weights(case: Case, mass_ratio: float | tuple[float, float] | None = No
     settings = settings_for(case, mass_ratio, changes=changes)
     count = len(Problem.of(case, settings).disturbances)
     nonlinear = {"sink": True, "tuned": False, "mixed": settings.family == "mixed"}
-    order = ["tuned", "sink", "mixed"] if settings.family == "tuned" else ["sink", "tuned", "mixed"]
-    weights = [float(count) if nonlinear[family] else _CLOSED_FORM for family in order]
+    weights = [float(count) if nonlinear[family] else _CLOSED_FORM for family in in_order(settings.family)]
     weights.append(_CLOSED_FORM)
     own = bool(case.absorbers) and case.absorbers[0].law.kind != "linear"
     if case.absorbers:

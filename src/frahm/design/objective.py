@@ -10,16 +10,32 @@ import numpy as np
 
 from frahm import readable
 from frahm.arrays import Floats
+from frahm.attractors import WorstCase
 from frahm.design.host import Conditions
 
 _RMS = 1 / math.sqrt(2)
 _MODULATED = 1.08  # modulated peaks over the larger of the periodic one and the ceiling of the slow manifold
 _MODULATED_RMS = 0.8  # rms of a modulated motion over that of a harmonic one of its largest amplitude
 _MODULATED_MEAN = 1.3  # what a climate mean of an unstable design is raised by before it is known better
-TITLES = {
-    "peak": "worst pipe peak", "rms": "worst pipe rms", "expected": "expected pipe peak",
-    "damage": "fatigue damage",
-}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Measure:
+    """What is measured of the motions under one disturbance."""
+
+    title: str
+    unit: str = "m"
+    over_climate: bool = False
+    of_rms: bool = False
+    of_damage: bool = False
+
+
+_MEASURES = {
+    "peak": _Measure("worst pipe peak"),
+    "rms": _Measure("worst pipe rms", of_rms=True),
+    "expected": _Measure("expected pipe peak", over_climate=True),
+    "damage": _Measure("fatigue damage", "1", over_climate=True, of_damage=True),
+}
 
 
 @dataclass(frozen=True)
@@ -37,9 +53,13 @@ class Objective:
     quantile: float | None = None
 
     @property
+    def _measure(self) -> _Measure:
+        return _MEASURES[self.name]
+
+    @property
     def unit(self) -> str:
         """Of its value."""
-        return "1" if self.name == "damage" else "m"
+        return self._measure.unit
 
     @property
     def unit_text(self) -> str:
@@ -53,14 +73,28 @@ class Objective:
     @property
     def over_climate(self) -> bool:
         """Whether it is a mean over the wind climate."""
-        return self.name in ("expected", "damage")
+        return self._measure.over_climate
+
+    @property
+    def of_rms(self) -> bool:
+        """Whether the rms of the pipe counts in place of its peak."""
+        return self._measure.of_rms
+
+    @property
+    def of_damage(self) -> bool:
+        """Whether it counts fatigue damage."""
+        return self._measure.of_damage
+
+    def at_worst(self, motion: WorstCase) -> float:
+        """What counts of the worst motions of one mode [m]."""
+        return motion.pipe_rms if self.of_rms else motion.pipe_peak
 
     @property
     def title(self) -> str:
         """In words."""
         if self.quantile is None:
-            return TITLES[self.name]
-        return f"{TITLES[self.name]}, {100 * self.quantile:g} % quantile over the scatter"
+            return self._measure.title
+        return f"{self._measure.title}, {100 * self.quantile:g} % quantile over the scatter"
 
     def over_scatter(self, values: Floats) -> Floats:
         """One value of those (..., D) over the disturbances: the largest, or the quantile, never interpolated."""
@@ -75,7 +109,7 @@ class Objective:
         the periodic response and the ceiling (N,) [m] of the slow manifold.
         """
         modulated = _MODULATED * np.maximum(peaks, ceilings[:, None])
-        if self.name == "rms":
+        if self.of_rms:
             return _RMS * np.where(unstable[:, None], _MODULATED_RMS * modulated, peaks)
         return np.where(unstable[:, None], modulated, peaks)
 

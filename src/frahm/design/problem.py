@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from frahm.arrays import Floats
+from frahm.assessment.counting import counted_band
 from frahm.assessment.detail import detail_of, fatigue_section
-from frahm.assessment.fatigue import counted_band
 from frahm.case import Case
 from frahm.design.absorber import DesignedAbsorber, with_design
 from frahm.design.disturbance import Disturbance, disturbances
@@ -210,7 +210,7 @@ class Problem:
     def counted(self) -> list[tuple[int, tuple[float, float]]]:
         """Modes besides the governing one whose damage counts, and the winds of each [m/s]."""
         fatigue = self.case.fatigue
-        if self.objective.name != "damage" or (fatigue is not None and fatigue.wind_speeds is not None):
+        if not self.objective.of_damage or (fatigue is not None and fatigue.wind_speeds is not None):
             return []
         ranges = ((mode, windows.range(Disturbance()).winds) for mode, _, windows in self.others)
         return [(mode, winds) for mode, winds in ranges if winds is not None]
@@ -239,7 +239,7 @@ class Problem:
         ends = np.concatenate([[speeds[0]], 0.5 * (speeds[1:] + speeds[:-1]), [speeds[-1]]])
         chances = np.asarray(climate.probability(ends[:-1], ends[1:]))
         rows = np.repeat(grid, len(self.disturbances), axis=0)
-        if self.objective.name == "expected":
+        if not self.objective.of_damage:
             conditions = host.conditions_at(self.disturbances, rows, lift=lift)
             total = float(np.sum(chances))
             return ClimateMean(conditions, chances / total if total > 0 else chances, lambda x, W: x)
@@ -258,7 +258,7 @@ def _check(case: Case, settings: DesignSettings, objective: Objective) -> None:
         wind_climate(case)
     if vortex_shedding(case).lift == 0:
         raise ParameterError("wind", case.wind.lift_coefficient, "a wind with lift: without it nothing moves the pipe")
-    if objective.name == "damage":
+    if objective.of_damage:
         fatigue_section(case)
     if settings.wind is not None and objective.over_climate:
         hint = "The band of the climate is fatigue.wind_speeds, or the winds that shed inside analysis.detuning."

@@ -1,4 +1,7 @@
-"""The best design by the closed form of one harmonic, under corrections learnt from the exact equations."""
+"""The best design by the closed form of one harmonic, under corrections learnt from the exact equations.
+
+Differential evolution: Storn and Price (1997), doi 10.1023/A:1008202821328.
+"""
 
 from __future__ import annotations
 

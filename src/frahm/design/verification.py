@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frahm.assessment.climate_mean import climate_mean
-from frahm.assessment.fatigue import counted_band
+from frahm.assessment.counting import counted_band
 from frahm.attractors import BESIDE, WorstCase, WorstMotion, joined, worst_over
 from frahm.case import Case
 from frahm.design.disturbance import Disturbance
@@ -114,7 +114,7 @@ def verification(
         changed = one.at_force(force).of(mode.system)
         worst = worst_over(
             changed, mode.windows.range(one, changed.reference_frequency), samples=samples, seed=seed,
-            min_basin=min_basin, periods=periods, rms=objective.name == "rms",
+            min_basin=min_basin, periods=periods, rms=objective.of_rms,
             beside=_FARTHER if quick else BESIDE,
         )  # fmt: skip
         if Outcome.INTERRUPTED.value in worst.unverified:
@@ -160,7 +160,7 @@ def _beside_worst(found: dict[Disturbance, dict[int, WorstCase]], objective: Obj
 
 def _value(worst: dict[int, WorstCase], objective: Objective) -> float:
     """Of the objective, for a pipe in every mode."""
-    return max(mode.pipe_rms if objective.name == "rms" else mode.pipe_peak for mode in worst.values())
+    return max(objective.at_worst(mode) for mode in worst.values())
 
 
 def _joined(found: dict[Disturbance, dict[int, WorstCase]], objective: Objective) -> Verification:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,13 @@ from frahm.units import si_value, to_si
 
 if TYPE_CHECKING:
     import xarray as xr
+
+# fmt: off
+_OTHER_THAN_SECONDS = frozenset([
+    "ns", "us", "µs", "μs", "ms", "msec", "millis", "millisecond", "milliseconds", "min", "mins", "minute", "minutes",
+    "h", "hr", "hrs", "hour", "hours", "d", "day", "days",
+])
+# fmt: on
 
 
 def read_time_series(path: str | Path, *, time: str | None = None, at: Mapping[str, float] | None = None) -> xr.Dataset:
@@ -35,9 +43,10 @@ def read_time_series(path: str | Path, *, time: str | None = None, at: Mapping[s
     Returns
     -------
     Dataset
-        Over "time" [s], a variable for every other column. Dates become seconds since the first one, which the
-        attribute `start` of the time tells. Vectors of a MAT file that are shorter are named in the attribute
-        `left_out`. Where a netCDF file has the components of the wind, `speed` [m/s] is added.
+        Over "time" [s], a variable for every other column; where no unit is given, its attribute `assumed` says so.
+        Dates become seconds since the first one, which the attribute `start` of the time tells. Vectors of a MAT file
+        that are shorter are named in the attribute `left_out`. Where a netCDF file has the components of the wind,
+        `speed` [m/s] is added.
 
     Raises
     ------
@@ -48,6 +57,7 @@ def read_time_series(path: str | Path, *, time: str | None = None, at: Mapping[s
     clock = _time_column(table, time, str(path))
     values, unit = table.columns[clock], table.units[clock]
     name = table.names[clock]
+    assumed = _seconds_assumed(name, str(path)) if not unit and clock not in table.starts else {}
     if unit not in ("", "s"):
         values = values * si_value(f"1 {unit}", "s", name=name)
     late = np.flatnonzero(~(np.isfinite(values[1:]) & (np.diff(values) > 0)))
@@ -55,7 +65,7 @@ def read_time_series(path: str | Path, *, time: str | None = None, at: Mapping[s
         where = table.place(int(late[0]) + 1) if late.size else None
         allowed = f"a time that ascends from sample to sample in the column {name!r}"
         raise ParameterError("file", str(path), allowed, where=where)
-    more = {"start": table.starts[clock]} if clock in table.starts else {}
+    more = assumed | ({"start": table.starts[clock]} if clock in table.starts else {})
     return _dataset("time", table, {"time": labelled("time", values, "time", "s", **more)}, path, clock)
 
 
@@ -97,6 +107,15 @@ def _dataset(dim: str, table: Table, coordinates: dict[str, Any], path: Any, lef
     if table.left_out:
         attributes["left_out"] = ", ".join(f"{name} of length {size}" for name, size in table.left_out.items())
     return xr.Dataset(variables, coordinates, attributes)
+
+
+def _seconds_assumed(name: str, path: str) -> dict[str, str]:
+    """What to say of a time without unit; refused where its name seems to tell another one than seconds."""
+    others = [word for word in re.findall(r"[A-Z]?[a-zµμ]+|[A-Z]+", name) if word.lower() in _OTHER_THAN_SECONDS]
+    if others:
+        hint = f"Write the unit in brackets, as in 'time [{others[0]}]' or 'time [s]'."
+        raise ParameterError("file", path, f"a unit of the time in the column {name!r}", hint=hint)
+    return {"assumed": f"seconds: the column {name!r} gives no unit"}
 
 
 def _time_column(table: Table, time: str | None, path: str) -> int:

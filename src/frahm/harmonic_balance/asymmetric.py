@@ -18,6 +18,12 @@ from frahm.harmonic_balance.starts import solve_seed
 
 _REACH = 2.0  # steps of a branch within which its end lies of the point where it is born
 _SAME = 1e-7
+_SYMMETRIC = 1e-3  # even part, in units of the scale, below which an orbit of any parity is a symmetric one
+_PUSHES = (0.02, 0.005, 0.05)  # off the symmetric orbit, in units of the scale, tried in this order
+_KEPT = 0.3  # share of a push that must be left as even part: else Newton's method fell back on the symmetric branch
+_RESIDUAL, _MOST_STEPS = 1e-9, 15  # of Newton's method
+_TILT = 1e-14  # of a singular matrix, relative, so that it can be factorised
+_ALL_BUT_SYMMETRIC = 0.05  # even part at an end over that of its neighbour
 
 
 def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> list[Track]:
@@ -106,7 +112,7 @@ def buckled_branches(search: Search, seeds: list[Seed], known: list[Track]) -> l
     tracks: list[Track] = []
     for seed in seeds:
         start = None if search.budget.reached else solve_seed(search, seed, False)
-        if start is None or np.linalg.norm(_even_part(search, *start)) < 1e-3 * search.x_scale:
+        if start is None or np.linalg.norm(_even_part(search, *start)) < _SYMMETRIC * search.x_scale:
             continue
         others = [track for track in known + tracks if not track.odd]
         if any(meets(search, track, *start) for track in others):
@@ -141,22 +147,22 @@ def _asymmetric_start(search: Search, y: Floats, _: Floats, H: int) -> tuple[Flo
     residual_and_jacobian(pb, H, False, full[n], full, *tables, R, J)
     normal = np.zeros(n + 1)
     normal[:n] = _null_vector(J[:n, :n])
-    for push in (0.02, 0.005, 0.05):
+    for push in _PUSHES:
         trial = full.copy()
         trial[:n] += push * search.x_scale * normal[:n]
         offset = float(normal[:n] @ trial[:n]) / search.x_scale
         ok, _, _ = correct(
             pb, H, False, trial, normal, offset, search.x_scale, search.w_scale, *tables, J, A,
-            np.empty(n + 1, np.int64), 1e-9, 15,
+            np.empty(n + 1, np.int64), _RESIDUAL, _MOST_STEPS,
         )  # fmt: skip
-        if ok and np.linalg.norm(_even_part(search, trial, H)) > 0.3 * push * search.x_scale:
+        if ok and np.linalg.norm(_even_part(search, trial, H)) > _KEPT * push * search.x_scale:
             return trial, H
     return None
 
 
 def _null_vector(J: Floats) -> Floats:
     """Unit vector that a nearly singular matrix maps to nearly nothing, by inverse iteration."""
-    factors = scipy.linalg.lu_factor(J + 1e-14 * np.linalg.norm(J) * np.eye(len(J)), check_finite=False)
+    factors = scipy.linalg.lu_factor(J + _TILT * np.linalg.norm(J) * np.eye(len(J)), check_finite=False)
     null = np.random.default_rng(1).standard_normal(len(J))
     for _ in range(3):
         null = scipy.linalg.lu_solve(factors, null / np.linalg.norm(null), check_finite=False)
@@ -188,8 +194,8 @@ def _half_of_pair(search: Search, track: Track) -> Track:
         low = max([i + 1 for i in flips if i < start], default=0)
         keep = np.arange(low, min([i + 1 for i in flips if i >= start], default=len(parts)))
     if flips or not track.closed:  # an end that is all but symmetric lies on the point where the branch was born
-        keep = keep[int(sizes[keep[0]] < 0.05 * sizes[keep[1]]) :] if len(keep) > 2 else keep
-        keep = keep[: -1 if sizes[keep[-1]] < 0.05 * sizes[keep[-2]] else None] if len(keep) > 2 else keep
+        keep = keep[int(sizes[keep[0]] < _ALL_BUT_SYMMETRIC * sizes[keep[1]]) :] if len(keep) > 2 else keep
+        keep = keep[: -1 if sizes[keep[-1]] < _ALL_BUT_SYMMETRIC * sizes[keep[-2]] else None] if len(keep) > 2 else keep
     if len(keep) == len(parts):
         return track
     part = [track.ys[keep], track.ts[keep], track.Hs[keep], track.truncations[keep]]

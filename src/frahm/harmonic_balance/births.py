@@ -29,6 +29,10 @@ _FINEST = 1 / 64  # of a step along places where lambda turns over a: at shorter
 _SHARES = np.geomspace(0.7, 1.35, 28)  # of a, over which lambda is looked at
 _CLOSE = 0.1  # |ln lambda^2| up to which an extreme that was not located is told
 _FIRST_HARMONICS = 5
+_MET = 1e-3  # share of the way to lambda = 1 at which a ring counts as met
+_STATIONARY = 1e-3  # change of ln lambda^2 by the next step, in units of the margin, at which lambda is stationary
+_CAUTIOUS = 0.2  # share of `_CLOSE` by which lambda may change in one step, so that an extreme is not passed over
+_TINY = 1e-300  # keeps a quotient finite
 LOOKED_AHEAD = 1.35  # factor on the force; first-harmonic extremes are known a little farther
 _ENOUGH = 1e-8  # truncation: lambda is then known far better than the margin
 
@@ -117,7 +121,7 @@ def _on_ring(search: Search, extreme: Extreme, place: _Place, bend: float) -> li
         beside = _with(search, extreme, place, np.array([way, 0.0]))
         if beside is None:
             break
-        if abs(beside.size) < 1e-3 * abs(place.size):
+        if abs(beside.size) < _MET * abs(place.size):
             return [_seed(search, extreme, beside)]
         way -= beside.size / beside.slopes[0]
     if abs(place.size) < _CLOSE:  # larger rings are met from first-harmonic roots
@@ -137,7 +141,7 @@ def _extreme(search: Search, start: Extreme, place: _Place) -> tuple[_Place, flo
     for _ in range(_ITERATIONS):
         step = -np.linalg.lstsq(B, place.slopes, rcond=None)[0]
         step /= max(1.0, float(np.max(np.abs(step) / _LONGEST)))
-        if abs(float(step @ place.slopes)) < 1e-3 * MARGIN:
+        if abs(float(step @ place.slopes)) < _STATIONARY * MARGIN:
             bends = np.linalg.eigvalsh((B + B.T) / 2) * start.sign
             return place, float(B[0, 0]) if np.min(bends) > 0 else 0.0
         there = _with(search, start, place, step)
@@ -157,7 +161,7 @@ def _downhill(search: Search, start: Extreme, place: _Place) -> tuple[_Place, bo
     way = -start.sign * math.copysign(1.0, place.slopes[1])
     share = 1.0
     for _ in range(2 * _ITERATIONS):
-        length = share * min(0.2 * _CLOSE / max(abs(float(place.slopes[1])), 1e-300), float(_LONGEST[1]))
+        length = share * min(_CAUTIOUS * _CLOSE / max(abs(float(place.slopes[1])), _TINY), float(_LONGEST[1]))
         there = _with(search, start, place, np.array([0.0, way * length]))
         there, gone = (None, False) if there is None else _turn_near(search, start, there)
         if there is None:

@@ -16,6 +16,11 @@ from frahm.harmonic_balance.search import Search, Track
 
 _QUICK = 0.2  # way of a multiplier near the unit circle from point to point that asks for a point between
 _BEYOND_NUMBERS = 1e300  # stands for a multiplier that no number holds
+_LEAST_NUMBER = 1e-300  # stands for a multiplier of zero, whose logarithm none holds
+_ROUNDS = 6  # of points put between points
+_GRAZING = 0.1  # of its bend: a logarithm whose summit comes as near to zero may have crossed it
+_STRAIGHT = 1e-9  # bend of a logarithm that is rounding
+_NEAR_CIRCLE = 0.9  # modulus from which on a multiplier may soon leave the unit circle
 
 
 def complete(search: Search, track: Track) -> bool:
@@ -111,19 +116,19 @@ def _on_edge(search: Search, track: Track, i: int, edge: float) -> tuple[Floats,
 
 def _uncover(search: Search, track: Track) -> None:
     """Insert points where a multiplier may leave the unit circle and come back between two points, or moves far."""
-    for _ in range(6):
+    for _ in range(_ROUNDS):
         m = np.where(np.isfinite(track.multipliers), track.multipliers, _BEYOND_NUMBERS)
-        logs = np.log(np.maximum(np.abs(m), 1e-300))
+        logs = np.log(np.maximum(np.abs(m), _LEAST_NUMBER))
         left, mid, right = logs[:-2], logs[1:-1], logs[2:]
         bend = left - 2 * mid + right
         with np.errstate(divide="ignore", invalid="ignore"):
             summit = mid - (right - left) ** 2 / (8 * bend)
-        crossed = (np.sign(summit) != np.sign(mid)) | (np.abs(summit) < 0.1 * np.abs(bend))
-        hidden = ((mid - left) * (mid - right) > 0) & crossed & (np.abs(bend) > 1e-9)
+        crossed = (np.sign(summit) != np.sign(mid)) | (np.abs(summit) < _GRAZING * np.abs(bend))
+        hidden = ((mid - left) * (mid - right) > 0) & crossed & (np.abs(bend) > _STRAIGHT)
         rows = np.flatnonzero(hidden.any(axis=1)) + 1
         leap = np.min(np.abs(m[:-1, :, None] - m[1:, None, :]), axis=2)
         size = np.abs(m[:-1])  # far outside the unit circle a way counts beside the size: steep growth asks for nothing
-        quick = np.flatnonzero(((leap > _QUICK * np.maximum(size, 1.0)) & (size > 0.9)).any(axis=1))
+        quick = np.flatnonzero(((leap > _QUICK * np.maximum(size, 1.0)) & (size > _NEAR_CIRCLE)).any(axis=1))
         wanted = np.unique(np.concatenate([rows - 1, rows, quick]))
         wanted = wanted[track.frequency[wanted] != track.frequency[wanted + 1]]  # not across a gap between pieces
         search.budget.take_points(len(wanted), int(unknowns(search.problem, np.max(track.Hs), track.odd)))

@@ -7,6 +7,8 @@ at the complex frequency s is the dynamic stiffness
 
 and D22^-1 is a sum over the poles of the structure with its elements held. Linear springs and dampers of the
 elements belong to C and K. At harmonic 0 a sink without linear spring has S = 0, which is no singularity here.
+
+Reduction to the coordinates of the nonlinear elements: Krack and Gross (2019), doi 10.1007/978-3-030-14023-6.
 """
 
 from __future__ import annotations

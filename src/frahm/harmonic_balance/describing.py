@@ -99,6 +99,8 @@ def amplitude_table(pb: Problem, rest: float, linear: Floats, damped: Floats, sy
     low = _LOWEST * float(np.min(linear))
     high = 1.5 * float(np.max(damped)) if np.all(np.isfinite(damped)) else math.inf
     high = min(high, low * 10.0**_MOST_DECADES)
+    if not 0 < low < high:  # below what numbers hold
+        return None
     amplitudes = np.geomspace(low, high, max(2, math.ceil(PER_DECADE * math.log10(high / low)) + 1))
     rows = np.empty((amplitudes.size * 12, 3))
     owner = np.empty(amplitudes.size * 12, np.int64)

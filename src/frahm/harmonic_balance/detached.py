@@ -15,6 +15,10 @@ from frahm.harmonic_balance.found import Found
 from frahm.harmonic_balance.loci import loci_with_frequency, orbit_peaks
 from frahm.systems import System
 
+_LOCATED = 1e-9  # along a curve, in scaled unknowns: where the parameter is extreme
+_NULL = 1e-10  # singular values below this share of the largest are those of the null direction
+_SAME = 1e-5  # relative difference below which two events are one
+
 
 @dataclass(frozen=True)
 class DetachedCurveEvent:
@@ -56,7 +60,7 @@ def detached_events(
             cusp = a.tangent[at - 1] * b.tangent[at - 1] < 0  # both axes turn back: two saddle-nodes meet on one curve
             if a.tangent[at] * b.tangent[at] >= 0 or a.tangent @ b.tangent < 0 or cusp:
                 continue
-            point = between_points(equations.residual, a, b, lambda p, at=at: float(p.tangent[at]), 1e-9)  # type: ignore[misc, attr-defined]
+            point = between_points(equations.residual, a, b, lambda p, at=at: float(p.tangent[at]), _LOCATED)  # type: ignore[misc, attr-defined]
             if point is None:
                 continue
             event = _event(equations, point, parameter, 1 if a.tangent[at] < 0 else -1)
@@ -94,7 +98,7 @@ def _quadratic_form(equations: Equations, orbit: Orbit) -> float:
     left, _, right = np.linalg.svd(orbit.J)
     v, w = np.asarray(right[-1], dtype=float), np.asarray(left[:, -1], dtype=float)
     by_frequency = orbit.changes[0]
-    u = np.asarray(np.linalg.lstsq(orbit.J, -by_frequency.rate, rcond=1e-10)[0], dtype=float)
+    u = np.asarray(np.linalg.lstsq(orbit.J, -by_frequency.rate, rcond=_NULL)[0], dtype=float)
     Kv, Ku = orbit.curvature_matrix(v), orbit.curvature_matrix(u)
     vv = w @ (Kv @ v)
     vu = w @ (Kv @ u + by_frequency.applied(orbit, v))
@@ -138,4 +142,4 @@ def _second_derivatives(pb: Problem, s: complex) -> tuple[Complexes, Complexes]:
 
 
 def _same_event(a: DetachedCurveEvent, b: DetachedCurveEvent) -> bool:
-    return abs(a.value - b.value) < 1e-5 * abs(a.value) and abs(a.frequency - b.frequency) < 1e-5 * a.frequency
+    return abs(a.value - b.value) < _SAME * abs(a.value) and abs(a.frequency - b.frequency) < _SAME * a.frequency

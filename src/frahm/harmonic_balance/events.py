@@ -2,6 +2,8 @@
 
 The numbers of unstable multipliers beside a located point must agree with the numbers at the ends of the step. Where
 they do not, a further event lies between, and the search goes on there: two events in one step are told apart.
+
+Which multipliers mean which bifurcation: Kuznetsov (2004), doi 10.1007/978-1-4757-3978-7.
 """
 
 from __future__ import annotations

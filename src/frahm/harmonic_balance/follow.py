@@ -1,4 +1,7 @@
-"""A whole branch of the harmonic balance in one compiled call: pseudo-arclength continuation in Omega."""
+"""A whole branch of the harmonic balance in one compiled call: pseudo-arclength continuation in Omega.
+
+Predictor and corrector: Allgower and Georg (2003), doi 10.1137/1.9780898719154.
+"""
 
 from __future__ import annotations
 

@@ -13,6 +13,10 @@ from frahm.harmonic_balance.search import Search, Track
 _MOST_POINTS = 6000
 _LONGEST = 0.02
 _HALVINGS = 60
+_OVERHANG = 0.01  # of a chord beyond its ends, where a solution at an end of a step may lie by rounding
+_AWAY = 0.5  # of a chord: farther from it no point of a smooth branch lies
+_SAME = 1e-5  # relative distance of two solutions that are one
+_ROUNDING = 1e-13  # of a frequency
 
 
 def followed(search: Search, odd: bool, y: Floats, H: int) -> Track:
@@ -73,14 +77,14 @@ def lies_in_step(search: Search, track: Track, X: Floats, H: int, W: float, i: i
     if length == 0.0:  # the branch was outside the window in between
         return False
     fraction = float(here @ chord) / length**2
-    if not -0.01 <= fraction <= 1.01 or np.linalg.norm(here - fraction * chord) > 0.5 * length:
+    if not -_OVERHANG <= fraction <= 1 + _OVERHANG or np.linalg.norm(here - fraction * chord) > _AWAY * length:
         return False
     point = midpoint(search, track, i, fraction)
     if point is None:
         return False
     found, own = np.zeros(n + 1), unknowns(search.problem, point[2], track.odd)
     found[: min(n, own)], found[n] = point[0][: min(n, own)], point[0][own]
-    return bool(np.linalg.norm((found - y[: n + 1]) / scales) < 1e-5 * np.linalg.norm(y[:n]) / search.x_scale)
+    return bool(np.linalg.norm((found - y[: n + 1]) / scales) < _SAME * np.linalg.norm(y[:n]) / search.x_scale)
 
 
 def _with_unknowns(search: Search, track: Track, i: int, n: int) -> Floats:
@@ -103,7 +107,7 @@ def point_at(search: Search, track: Track, i: int, W: float) -> tuple[Floats, in
         y, _, H = point
         found = y, H
         miss = float(y[unknowns(search.problem, H, track.odd)]) - W
-        if abs(miss) < 1e-13 * W:
+        if abs(miss) < _ROUNDING * W:
             break
         if miss * above < 0:
             lo, below = hi, above

@@ -2,6 +2,8 @@
 
 A disturbance e^{lam t} sum_k v_k e^{ik Omega t} of the elements' coordinates obeys, with P_m the Fourier coefficients
 of the elements' slopes, S(lam + ik Omega) v_k + sum_l P_{k-l} v_l = 0, S being the dynamic stiffness of the whole host.
+
+Hill's method in harmonic balance: von Groll and Ewins (2001), doi 10.1006/jsvi.2000.3298.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@ from frahm.harmonic_balance.search import Search, Track
 
 _SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
 
+NONE_FOUND = "No periodic response was found: Newton's method failed from every seed."
 _NEAR = 0.01  # of a frequency: how far from it a detached curve may be and still reach there
 
 
@@ -40,7 +41,7 @@ def not_proven(search: Search, at: float | None = None) -> tuple[str, ...]:
     seeder, found = search.seeder, []
     lo, hi = (search.lo, search.hi) if at is None else ((1 - _NEAR) * at, (1 + _NEAR) * at)
     for W in search.undecided:
-        if lo <= W <= hi and not _all_known(search, at):
+        if lo <= W <= hi and not all_known(search, at):
             found.append(
                 f"Whether a small detached curve exists near {W:.6g} rad/s could not be told: it is born within"
                 f" {MARGIN:.0e} of the force, or its birth could not be located."
@@ -56,7 +57,18 @@ def not_proven(search: Search, at: float | None = None) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _all_known(search: Search, at: float | None) -> bool:
+def unstable_unproven(search: Search) -> tuple[str, ...]:
+    """A sentence where unstable responses are known to lack at times: about other means than 0, of high harmonics."""
+    seeder = search.seeder
+    if seeder.table is None or (search.problem.odd and not seeder.buckled):
+        return ()
+    return (
+        "There may be further unstable responses: about other means than 0 such were met to which no first-harmonic"
+        " solution leads.",
+    )
+
+
+def all_known(search: Search, at: float | None) -> bool:
     """Whether the equations of one harmonic are asked for at a frequency where all their solutions are known."""
     seeder = search.seeder
     proven = seeder.shared is not None or (seeder.spring is not None and seeder.table is None)

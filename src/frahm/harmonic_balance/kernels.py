@@ -5,6 +5,9 @@ The unknown vector holds Re u_k, Im u_k of every coordinate, harmonic by harmoni
 is kept at zero by an equation of its own. Time samples cover half a period for odd harmonics, a whole one otherwise,
 dense enough for polynomial forces to be balanced without aliasing; forces of other laws are sampled sixteen times per
 period of the highest harmonic, which leaves the aliasing far below the truncation.
+
+Alternating frequency-time evaluation: Cameron and Griffin (1989), doi 10.1115/1.3176036; for the method see Krack and
+Gross (2019), doi 10.1007/978-3-030-14023-6.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""Curves of saddle-node and Neimark-Sacker points in two parameters."""
+"""Curves of saddle-node and Neimark-Sacker points in two parameters.
+
+Bifurcation tracking in harmonic balance: Detroux et al. (2015), doi 10.1016/j.cma.2015.07.017.
+"""
 
 from __future__ import annotations
 
@@ -13,17 +16,27 @@ from frahm.continuation import ContinuationSettings, CurvePoint, between_points,
 from frahm.errors import Outcome
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import condense, unknowns
-from frahm.harmonic_balance.equations import FREQUENCY, Equations, FoldEquations, TorusEquations
+from frahm.harmonic_balance.equations import FREQUENCY, Equations
 from frahm.harmonic_balance.events import LocatedEvent
 from frahm.harmonic_balance.floquet import map_multipliers
+from frahm.harmonic_balance.fold_equations import FoldEquations
 from frahm.harmonic_balance.kernels import harmonics_of
 from frahm.harmonic_balance.orbits import output_series, peak_of
 from frahm.harmonic_balance.search import Search, Track, begin
+from frahm.harmonic_balance.torus_equations import TorusEquations
 from frahm.systems import System, parameter_value, with_parameters
 
 _SETTINGS = ContinuationSettings(first_step=5e-3, longest_step=0.06, angle=0.2, tolerance=1e-9, most_points=1500)
 _MOST_HARMONICS = 61
 _GOAL = 1e-6
+_RESIDUAL, _MOST_STEPS = 1e-9, 12  # of Newton's method, in scaled unknowns
+_EDGE = 1e-9  # a point this far beyond the bounds lies on them
+_COMPLEX = 1e-6  # imaginary part from which on a multiplier is one of a pair
+_RETURN = 0.5  # cosine of the angle by which a curve in its plane turns back at a cusp
+_TURN = 0.5  # change of a multiplier's argument from point to point [rad], above which it has wrapped around
+_ON_SLICE = (0.3, 2e-3, 0.05)  # one point on a slice: of the step and of the window in frequency, of the peak
+_SAME_PLACE, _SAME_HEIGHT = 0.05, 0.1  # same curve: distance of its middle in units of the bounds, and of its peak
+_AT = 1e-10  # along a curve, in scaled unknowns: where it is cut at a frequency
 
 
 @dataclass(frozen=True)
@@ -187,18 +200,17 @@ def _both_ways(
     equations: Equations, first: Floats, bounds: tuple[tuple[float, float], tuple[float, float]]
 ) -> tuple[list[CurvePoint], tuple[Outcome, ...]] | None:
     n = equations.n
-    margin = 1e-9
 
     def inside(y: Floats) -> bool:
         values = equations.axis_values(y)
-        return all(lo - margin <= value <= hi + margin for value, (lo, hi) in zip(values, bounds, strict=True))
+        return all(lo - _EDGE <= value <= hi + _EDGE for value, (lo, hi) in zip(values, bounds, strict=True))
 
     guide = np.zeros(first.size)
     guide[n + 1] = 1.0
-    settled = newton(equations.residual, first, guide, 1e-9, 12)  # type: ignore[attr-defined]
+    settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)  # type: ignore[attr-defined]
     if settled is None:
         guide[n], guide[n + 1] = 1.0, 0.0
-        settled = newton(equations.residual, first, guide, 1e-9, 12)  # type: ignore[attr-defined]
+        settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)  # type: ignore[attr-defined]
     if settled is None:
         return None
     parts, outcomes = [], []
@@ -238,7 +250,7 @@ def _angular_rate(start: _Start) -> float:
     harmonics_of(pb, H, odd, y, u)
     values = np.empty(2 * start.search.variation.K.shape[0], complex)
     map_multipliers(pb, start.search.variation, H, odd, W, u, values)
-    pairs = values[values.imag > 1e-6]
+    pairs = values[values.imag > _COMPLEX]
     critical = pairs[np.argmin(np.abs(np.log(np.abs(pairs))))]
     return float(np.angle(critical) * W / (math.pi if odd else 2 * math.pi))
 
@@ -259,14 +271,14 @@ def _marks(equations: Equations, points: list[CurvePoint], kind: str) -> tuple[t
         plane = np.array([p.tangent[n : n + 2] for p in points])
         size = np.linalg.norm(plane, axis=1)
         for i in range(1, len(points)):
-            if plane[i - 1] @ plane[i] < -0.5 * size[i - 1] * size[i]:  # the curve turns back on itself
+            if plane[i - 1] @ plane[i] < -_RETURN * size[i - 1] * size[i]:  # the curve turns back on itself
                 marks.append((i, "cusp"))
         return tuple(marks)
     angle = np.array([p.y[n + 2] * equations.frequency / equations.frequency_at(p.y) for p in points])
     turn = math.pi * angle * (1 if equations.odd else 2)  # argument of the multiplier of the (half) map
     for i in range(1, len(points)):
         for target, name in ((0.0, "1:1 resonance"), (math.pi, "1:2 resonance")):
-            if (turn[i - 1] - target) * (turn[i] - target) < 0 and abs(turn[i] - turn[i - 1]) < 0.5:
+            if (turn[i - 1] - target) * (turn[i] - target) < 0 and abs(turn[i] - turn[i - 1]) < _TURN:
                 marks.append((i, name))
     return tuple(marks)
 
@@ -293,7 +305,9 @@ def _lies_on(locus: Locus, frequency: float, value: float, peak: float, window: 
         near = W[i] + f * (W[i + 1] - W[i])
         height = locus.relative_peak[i] + f * (locus.relative_peak[i + 1] - locus.relative_peak[i])
         leap = abs(W[i + 1] - W[i])
-        if abs(near - frequency) < 0.3 * leap + 2e-3 * (window[1] - window[0]) and abs(height - peak) < 0.05 * peak:
+        of_step, of_window, of_peak = _ON_SLICE
+        close = abs(near - frequency) < of_step * leap + of_window * (window[1] - window[0])
+        if close and abs(height - peak) < of_peak * peak:
             return True
     return False
 
@@ -304,7 +318,7 @@ def _at_frequency(equations: Equations, points: list[CurvePoint], frequency: flo
     found = []
     for a, b in itertools.pairwise(points):
         if (a.y[equations.n] - scaled) * (b.y[equations.n] - scaled) <= 0:
-            point = between_points(equations.residual, a, b, lambda p: float(p.y[equations.n] - scaled), 1e-10)  # type: ignore[attr-defined]
+            point = between_points(equations.residual, a, b, lambda p: float(p.y[equations.n] - scaled), _AT)  # type: ignore[attr-defined]
             if point is not None:
                 found.append(point)
     return found
@@ -339,5 +353,5 @@ def _same_curve(a: Locus, b: Locus, bounds: tuple[tuple[float, float], tuple[flo
     middle = a.values[len(a.values) // 2] / scales
     distance = np.linalg.norm(b.values / scales - middle, axis=1)
     i = int(np.argmin(distance))
-    same_height = abs(b.relative_peak[i] - a.relative_peak[len(a.values) // 2]) < 0.1 * b.relative_peak[i]
-    return bool(distance[i] < 0.05 and same_height)
+    same_height = abs(b.relative_peak[i] - a.relative_peak[len(a.values) // 2]) < _SAME_HEIGHT * b.relative_peak[i]
+    return bool(distance[i] < _SAME_PLACE and same_height)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,19 +12,32 @@ from frahm.arrays import Complexes, Floats, frozen
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import unstable_count
-from frahm.harmonic_balance.floquet import monodromy, variation_of
+from frahm.harmonic_balance.floquet import monodromy
 from frahm.harmonic_balance.following import lies_in_step, point_at
 from frahm.harmonic_balance.found import Found
-from frahm.harmonic_balance.inventory import inventory_text, not_proven, unfinished
+from frahm.harmonic_balance.indices import missing
+from frahm.harmonic_balance.inventory import (
+    NONE_FOUND,
+    all_known,
+    inventory_text,
+    not_proven,
+    unfinished,
+    unstable_unproven,
+)
 from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic
 from frahm.harmonic_balance.linear import check_rest, is_linear, linear_exponents, linear_response
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of
 from frahm.harmonic_balance.search import Search, Track, begin
+from frahm.harmonic_balance.starts import solve_seed
+from frahm.harmonic_balance.variation import variation_of
 from frahm.systems import System
 
 _NEIGHBOURHOOD = 0.12
 _FINE_GOAL = 1e-11
+_EXACT = 1e-6  # residual up to which a response has the multipliers of an exact one
+_SAME, _SAME_REST = 1e-6, 1e-9  # relative difference of states that are one, and of those near zero in relative peaks
+_TINY = 1e-300  # keeps what is compared with zero apart from it
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +94,12 @@ class PeriodicResponse:
         return np.asarray(sum((X * np.exp(1j * k * self.frequency * t)).real for k, X in self.harmonics.items()))
 
 
-def periodic_responses_of(system: System, frequency: float, harmonics: int | None) -> Found[PeriodicResponse]:
+def periodic_responses_of(
+    system: System, frequency: float, harmonics: int | None, *, every: bool = False
+) -> Found[PeriodicResponse]:
     """All periodic responses at Omega = `frequency` [rad/s], by ascending relative amplitude.
+
+    If `every` one is asked for and not those that attract alone, what may lack among the unstable ones is said, too.
 
     Branches are searched and followed over a neighbourhood of the frequency, so that a response is found even where
     the first harmonic alone does not see it.
@@ -90,12 +107,37 @@ def periodic_responses_of(system: System, frequency: float, harmonics: int | Non
     if is_linear(system) or not np.any(system.forcing):
         return Found([_linear(system, frequency)], "A linear system has one periodic response.")
     search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
+    known = _of_one_harmonic(search, frequency)
+    if known is not None:
+        return known
     tracks = find_branches(search, at=frequency)
     found = responses_on(search, tracks, frequency)
     doubts = (
-        *search.unsearched, *search.budget.sentences(), *not_proven(search, frequency), *unfinished(tracks)
+        *search.unsearched, *search.budget.sentences(), *not_proven(search, frequency), *unfinished(tracks),
+        *(_missing(search, found) if found else (NONE_FOUND,)), *(unstable_unproven(search) if every else ()),
     )  # fmt: skip
     return Found(found, inventory_text(search), doubts)
+
+
+def _of_one_harmonic(search: Search, frequency: float) -> Found[PeriodicResponse] | None:
+    """The solutions of the equations of one harmonic where all of them are known at a frequency, or None."""
+    seeds = search.seeder.at(frequency, search.x_scale) if search.harmonics == 1 else []
+    if not seeds or not all_known(search, frequency):
+        return None
+    solved = [solve_seed(search, seed, True) for seed in seeds if set(seed.harmonics) == {1}]
+    if any(one is None for one in solved):
+        return None
+    found = [_response(search, True, X, H, frequency) for X, H in (one for one in solved if one is not None)]
+    found = sorted(found, key=lambda response: response.relative_amplitude)
+    return Found(found, "All solutions of the equations of one harmonic at this frequency.", tuple(search.unsearched))
+
+
+def _missing(search: Search, found: Sequence[PeriodicResponse]) -> tuple[str, ...]:
+    """A sentence if the responses found cannot be all; of those of a fixed number of harmonics nothing is known."""
+    if search.harmonics is not None or any(response.residual > _EXACT for response in found):
+        return ()
+    largest = max(response.relative_peak for response in found)
+    return missing(search.system, [response.multipliers for response in found], largest)
 
 
 def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> list[PeriodicResponse]:
@@ -186,7 +228,7 @@ def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> Periodi
 
 
 def _same(a: PeriodicResponse, b: PeriodicResponse) -> bool:
-    return bool(np.allclose(a.state, b.state, rtol=1e-6, atol=1e-9 * max(a.relative_peak, 1e-300)))
+    return bool(np.allclose(a.state, b.state, rtol=_SAME, atol=_SAME_REST * max(a.relative_peak, _TINY)))
 
 
 def _linear(system: System, W: float) -> PeriodicResponse:

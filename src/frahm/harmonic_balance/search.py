@@ -11,10 +11,10 @@ from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Floats
 from frahm.harmonic_balance.condensation import Problem, condense, unknowns
 from frahm.harmonic_balance.events import LocatedEvent, Point
-from frahm.harmonic_balance.floquet import Variation, variation_of
 from frahm.harmonic_balance.found import Budget
 from frahm.harmonic_balance.quasi_static import searched_window
 from frahm.harmonic_balance.seeds import Seeder, seeder_for
+from frahm.harmonic_balance.variation import Variation, variation_of
 from frahm.systems import System
 
 GOAL = 1e-8

@@ -26,6 +26,9 @@ from frahm.polynomials import cubic_roots
 _STARTS = 48
 _TWO_HARMONIC_STARTS = 16
 _ROUNDING = 1e-9
+_REAL = 1e-7  # imaginary part of a root that is real but for rounding, relative
+_SAME = 1e-6  # relative difference of two solutions that are one
+_NOTHING = 1e-12  # of the scale: solutions that are all but zero are one
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,7 @@ def amplitude_roots(S: complex, F: complex, e: Floats) -> Floats:
     real = np.polynomial.Polynomial([S.real + e[0], *e[1:]])
     polynomial = np.polynomial.Polynomial([0, 1]) * (real * real + S.imag**2) - abs(F) ** 2
     roots = polynomial.trim().roots()
-    keep = (np.abs(roots.imag) < 1e-7 * np.abs(roots)) & (roots.real > 0)
+    keep = (np.abs(roots.imag) < _REAL * np.abs(roots)) & (roots.real > 0)
     return np.sort(roots[keep].real)
 
 
@@ -118,7 +121,7 @@ def two_harmonic_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
         X[:4] = start.real[0], start.imag[0], start.real[1], start.imag[1]
         ok, _, _ = solve_at(pb, True, W, X, 3, 3, math.inf, 20)
         u = X[:4:2] + 1j * X[1:4:2]
-        if ok and not any(np.max(np.abs(u - other)) < 1e-6 * np.max(np.abs(u)) for other in found):
+        if ok and not any(np.max(np.abs(u - other)) < _SAME * np.max(np.abs(u)) for other in found):
             found.append(u)
     return [Seed(W, {1: u[:1], 3: u[1:]}) for u in found]
 
@@ -148,7 +151,8 @@ def searched_seeds(pb: Problem, W: float, scale: float, odd: bool) -> list[Seed]
             X[: 2 * r : 2] = mean
         ok, _, _ = solve_at(pb, odd, W, X, 1, 1, math.inf, 30)
         u = X[: at + 2 * r : 2] + 1j * X[1 : at + 2 * r : 2]
-        if ok and not any(np.max(np.abs(u - other)) < 1e-6 * (np.max(np.abs(u)) + 1e-12 * scale) for other in found):
+        close = _SAME * (np.max(np.abs(u)) + _NOTHING * scale)
+        if ok and not any(np.max(np.abs(u - other)) < close for other in found):
             found.append(u)
     return [Seed(W, {1: u} if odd else {0: u[:r], 1: u[r:]}) for u in found]
 
@@ -231,4 +235,4 @@ def _may_buckle(pb: Problem, W: float) -> bool:
     for e, code in enumerate(pb.codes):
         slope = law_force_and_slopes(code[0], code[1], code[2], pb.table, 0.0, 0.0)[1]
         K += slope * np.outer(pb.directions[:, e], pb.directions[:, e])
-    return bool(np.min(np.linalg.eigvalsh((K + K.T) / 2), initial=0.0) < -1e-9 * np.max(np.abs(K), initial=0.0))
+    return bool(np.min(np.linalg.eigvalsh((K + K.T) / 2), initial=0.0) < -_ROUNDING * np.max(np.abs(K), initial=0.0))

@@ -8,21 +8,13 @@ from frahm.loads.amplitudes import (
     griffin_skop_amplitude,
     sarpkaya_amplitude,
 )
+from frahm.loads.case_ranges import operating_range, other_ranges
 from frahm.loads.climate import Persistence, WindClimate, persistence, wind_climate
 from frahm.loads.correlation import Antinodes, antinodes, correlation_length
 from frahm.loads.eurocode import LoadCycles, SpectralAmplitude, eurocode_amplitude, load_cycles, spectral_amplitude
 from frahm.loads.mode_factors import ModeFactors, mode_factors
 from frahm.loads.onset import Criterion, onset_criteria, onset_sentence
-from frahm.loads.operating_range import (
-    OperatingRange,
-    excited_bands,
-    frequency_range,
-    locking_wind,
-    operating_range,
-    other_ranges,
-    site_winds,
-    split_resonances,
-)
+from frahm.loads.operating_range import OperatingRange, frequency_range
 from frahm.loads.over_wind import (
     ExcitationOverWind,
     WindExcitation,
@@ -41,6 +33,7 @@ from frahm.loads.similarity import (
     similarity,
     skop_griffin_number,
 )
+from frahm.loads.site import excited_bands, locking_wind, site_winds, split_resonances
 from frahm.loads.vortex import (
     AIR_VISCOSITY,
     VortexShedding,

@@ -20,10 +20,10 @@ from frahm.plotting.design_figures import save_design_figures
 from frahm.report import decision
 from frahm.report.document import document_rows
 from frahm.report.environment import template
+from frahm.report.input_tables import input_rows
 from frahm.report.numbers import number
 from frahm.report.references import reference_rows
 from frahm.report.report import REPORT_FILE, image_address
-from frahm.report.tables import input_rows
 from frahm.response import frequency_response
 
 

@@ -23,7 +23,16 @@ from frahm.plotting.over_wind import over_wind_plot
 from frahm.plotting.plain import PlainFigure
 from frahm.plotting.views import MotionView, motion_views, trajectory_to_show
 from frahm.plotting.wind import gusts_plot
-from frahm.report import decision, fatigue_tables, tables
+from frahm.report import (
+    check_tables,
+    decision,
+    fatigue_tables,
+    input_tables,
+    motion_tables,
+    places,
+    response_tables,
+    wind_tables,
+)
 from frahm.report.document import document_rows
 from frahm.report.environment import template
 from frahm.report.references import reference_rows
@@ -73,8 +82,13 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
         results=analysis.results,
         margin=margin_of(analysis.results),
         force_margin=FORCE_MARGIN,
-        tables=tables,
+        check_tables=check_tables,
         fatigue_tables=fatigue_tables,
+        input_tables=input_tables,
+        motion_tables=motion_tables,
+        places=places,
+        response_tables=response_tables,
+        wind_tables=wind_tables,
         views=views[:_MOST_MOTIONS],
         more_motions=max(0, len(views) - _MOST_MOTIONS),
         plots=plots,

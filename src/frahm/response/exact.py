@@ -20,7 +20,7 @@ from frahm.harmonic_balance import (
     linear_response,
     resonant_grid,
 )
-from frahm.harmonic_balance.inventory import inventory_text, not_proven, unfinished
+from frahm.harmonic_balance.inventory import NONE_FOUND, inventory_text, not_proven, unfinished
 from frahm.response.curve import ResponseCurve, SpecialPoint
 from frahm.systems import System, detuning_of
 
@@ -77,7 +77,7 @@ def _assembled(system: System, tracks: list[Track], search: Search, settings: di
     columns = np.concatenate([track.columns for track in tracks]) if tracks else np.empty((0, 5))
     growth = np.concatenate([_growth(track) for track in tracks]) if tracks else np.empty(0)
     if not tracks:
-        doubtful.append("No periodic response was found: Newton's method failed from every seed.")
+        doubtful.append(NONE_FOUND)
     return ResponseCurve(
         frequency=columns[:, 0],
         detuning=detuning_of(system, columns[:, 0]),

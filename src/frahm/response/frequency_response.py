@@ -144,7 +144,7 @@ def periodic_responses(
 
     system = as_system(case_or_system)
     W = excitation_frequency(system, detuning=detuning, frequency=frequency)
-    return periodic_responses_of(system, W, highest_harmonic(harmonics))
+    return periodic_responses_of(system, W, highest_harmonic(harmonics), every=True)
 
 
 def highest_harmonic(harmonics: int | str) -> int | None:

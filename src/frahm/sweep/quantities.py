@@ -189,10 +189,7 @@ def _responses(point: Point, asked: Any) -> Found:
     sigma: Any = point.place(asked)
     found = periodic_responses(point.system, detuning=sigma, harmonics=point.case.analysis.harmonics)
     stable = [response for response in found if response.stable]
-    doubts: tuple[str, ...] = (
-        () if found else ("No periodic response was found: Newton's method failed from every seed.",)
-    )
-    doubts += found.unverified
+    doubts = found.unverified
     residual = max((response.residual for response in found), default=0.0)
     if residual > _ROUGH and point.case.analysis.harmonics == "auto":
         doubts += (f"Up to {100 * residual:.3g} % of the forces lie beyond the highest harmonic there is room for.",)

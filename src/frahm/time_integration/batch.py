@@ -147,15 +147,20 @@ def integrate_batch(
         tolerance=tolerance,
     )
     check_memory("strobes", strobes, count * strobes * 2 * n)
-    runs = Runs(
+    runs = _runs(count, len(systems), omega, states, phases, scales)
+    findings = run_plan(pack_systems(systems), runs, plan, strobes, workers)
+    return _result(systems, omega * np.ones(count), runs, plan, findings)
+
+
+def _runs(count: int, systems: int, omega: Floats, states: Floats, phases: Floats, scales: Floats) -> Runs:
+    """Runs in the order of the kernel, each with its own system, frequency, state, phase and force."""
+    return Runs(
         np.concatenate([states[:, 0::2], states[:, 1::2]], axis=1) * np.ones((count, 1)),
-        np.arange(count) % len(systems),
+        np.arange(count) % systems,
         2 * np.pi / omega * np.ones(count),
         np.mod(phases / (2 * np.pi), 1.0) * np.ones(count),
         scales * np.ones(count),
     )
-    findings = run_plan(pack_systems(systems), runs, plan, strobes, workers)
-    return _result(systems, omega * np.ones(count), runs, plan, findings)
 
 
 def plan_run(

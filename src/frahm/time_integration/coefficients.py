@@ -1,7 +1,8 @@
 """Coefficients of the Dormand-Prince method of order 8(5,3), DOP853.
 
-Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993,
-section II.5 and the authors' published program. Indices start at 1 as in the book: ``A5_3`` is a_53.
+Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer 1993, doi
+10.1007/978-3-540-78862-1, section II.5 and the authors' published program. Indices start at 1 as in the book: ``A5_3``
+is a_53.
 """
 
 # Nodes c_i.

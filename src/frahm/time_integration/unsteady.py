@@ -15,7 +15,7 @@ from frahm.errors import ConvergenceError, Outcome, ParameterError, check_count,
 from frahm.loads import WakeOscillator, scruton_number, skop_griffin_number, wind_excitation
 from frahm.loads.record import WindRecord, as_record, constant_record, turbulent_record
 from frahm.loads.vortex import check_speeds
-from frahm.systems import System, build_system
+from frahm.systems import build_system
 from frahm.time_integration.batch import TOLERANCE, check_memory
 from frahm.time_integration.driven_history import DrivenHistory, integrate_record
 from frahm.time_integration.wake import check_wake, wake_excitation
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _DEFAULT_DURATION = 600.0  # [s], over which wind speeds are averaged
 _GUST_PERIODS = 2.0  # shedding periods the fastest gust kept lasts: vortices cannot follow faster ones
+_ROUNDING = 1e-14  # a span of whole samples may fall short by rounding
 _FORCED_NOTES = (
     "Shedding frequency and lift follow the wind without delay and in phase along the pipe; a gust that is short "
     "against the shedding period, or does not cover the pipe, does less.",
@@ -206,43 +207,80 @@ def unsteady_response(
     case = load_case(case)
     wind = _wind(case, record, duration, seed)
     span = wind.duration if duration is None else min(duration, wind.duration)
-    low, high = _extremes(wind, span)
-    if wake is None:
-        check_speeds(case, "record", low, high)
-    else:
-        check_wake(case, wake)
+    _check_winds(case, wind, span, wake)
     tolerance = TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
     per_period = check_count("samples_per_period", samples_per_period, at_least=8, at_most=10**4)
-    spacing = 2 * math.pi / case.pipe.frequency / per_period
-    count = math.floor(span / spacing * (1 + 1e-14)) + 1
-    system, bare = build_system(case), build_system(case.without_absorbers())
-    check_memory("duration", span, count * (2 * system.size + 2) * 4)
-    n, alone = system.size, bare.size
-    state = np.zeros(2 * n) if initial_state is None else finite_array("initial_state", initial_state, (2 * n,))
-    law = wind_excitation(case)
-    calm = constant_record(_mean(wind, span), max(span, spacing))
-    with_them = (case, system, state, spacing, count, tolerance, wake)
-    without = (case.without_absorbers(), bare, state[: 2 * alone], spacing, count, tolerance, wake)
-    runs = [integrate_record(record, *which) for which in (with_them, without) for record in (wind, calm)]
+    work = _Integration(case, wind, span, per_period, tolerance, wake)
+    runs = work.runs(initial_state)
     failed = next((run.outcome for run in runs if not run.outcome.ok), None)
     if throw and failed is not None:
         raise ConvergenceError(failed.value)
-    times = wind.time[0] + spacing * np.arange(count)
-    speed = np.interp(times, wind.time, wind.speed)
+    return work.response(runs)
+
+
+@dataclass(frozen=True, eq=False)
+class _Integration:
+    """What is integrated: a case in the first `span` seconds of a wind, and how closely."""
+
+    case: Case
+    wind: WindRecord
+    span: float
+    per_period: int
+    tolerance: float
+    wake: WakeOscillator | None
+
+    @property
+    def spacing(self) -> float:
+        """Of the samples [s]."""
+        return 2 * math.pi / self.case.pipe.frequency / self.per_period
+
+    @property
+    def count(self) -> int:
+        """Samples, the initial state included."""
+        return math.floor(self.span / self.spacing * (1 + _ROUNDING)) + 1
+
+    def runs(self, initial_state: ArrayLike | None) -> tuple[DrivenHistory, ...]:
+        """Motions with absorbers in the wind and in steady wind of its mean, and both without."""
+        alone = self.case.without_absorbers()
+        system, bare = build_system(self.case), build_system(alone)
+        check_memory("duration", self.span, self.count * (2 * system.size + 2) * 4)
+        n = 2 * system.size
+        state = np.zeros(n) if initial_state is None else finite_array("initial_state", initial_state, (n,))
+        calm = constant_record(_mean(self.wind, self.span), max(self.span, self.spacing))
+        pipes = ((self.case, system, state), (alone, bare, state[: 2 * bare.size]))
+        return tuple(
+            integrate_record(record, *pipe, self.spacing, self.count, self.tolerance, self.wake)
+            for pipe in pipes
+            for record in (self.wind, calm)
+        )
+
+    def response(self, runs: tuple[DrivenHistory, ...]) -> UnsteadyResponse:
+        """The motions with the wind that made them, and the closed forms they are judged by."""
+        case, wake = self.case, self.wake
+        times = self.wind.time[0] + self.spacing * np.arange(self.count)
+        speed = np.interp(times, self.wind.time, self.wind.speed)
+        if wake is None:
+            law = wind_excitation(case)
+            frequency, lift = law.frequency(speed), law.lift(speed)
+            resonant, amplitude, measured = _resonance(case)
+        else:
+            frequency, lift = wake_excitation(case, wake, speed)
+            resonant, amplitude, measured = *_wake_resonance(case, wake), math.nan
+        rate = case.pipe.damping_ratio * case.pipe.frequency
+        return UnsteadyResponse(
+            case=case, record=self.wind, speed=frozen(speed), frequency=frozen(frequency), lift=frozen(lift),
+            history=runs[0], steady=runs[1], bare=runs[2], bare_steady=runs[3],
+            resonant_speed=resonant, resonant_amplitude=amplitude, time_constant=1 / rate if rate else math.inf,
+            build_up_time=measured, since=0.5 * self.span, notes=_notes(case, self.wind, self.span, wake),
+            samples_per_period=self.per_period, tolerance=self.tolerance,
+        )  # fmt: skip
+
+
+def _check_winds(case: Case, wind: WindRecord, span: float, wake: WakeOscillator | None) -> None:
     if wake is None:
-        frequency, lift = law.frequency(speed), law.lift(speed)
-        resonant, amplitude, measured = _resonance(case, bare)
+        check_speeds(case, "record", *_extremes(wind, span))
     else:
-        frequency, lift = wake_excitation(case, wake, speed)
-        resonant, amplitude, measured = *_wake_resonance(case, wake), math.nan
-    rate = case.pipe.damping_ratio * case.pipe.frequency
-    return UnsteadyResponse(
-        case=case, record=wind, speed=frozen(speed), frequency=frozen(frequency), lift=frozen(lift),
-        history=runs[0], steady=runs[1], bare=runs[2], bare_steady=runs[3],
-        resonant_speed=resonant, resonant_amplitude=amplitude, time_constant=1 / rate if rate else math.inf,
-        build_up_time=measured, since=0.5 * span, notes=_notes(case, wind, span, wake),
-        samples_per_period=per_period, tolerance=tolerance,
-    )  # fmt: skip
+        check_wake(case, wake)
 
 
 def _wind(case: Case, record: Any, duration: float | None, seed: int | None) -> WindRecord:
@@ -291,7 +329,7 @@ def _wake_resonance(case: Case, wake: WakeOscillator) -> tuple[float, float]:
     return speed, pipe.diameter * wake.lock_in_amplitude(skop_griffin_number(Ks, wake.strouhal))
 
 
-def _resonance(case: Case, bare: System) -> tuple[float, float, float]:
+def _resonance(case: Case) -> tuple[float, float, float]:
     """Resonant speed, amplitude of the governing mode there, and the time constant of an integrated build-up."""
     speeds = wind_excitation(case).speeds_of(case.pipe.frequency)
     speed = float(speeds.min()) if speeds.size else math.nan

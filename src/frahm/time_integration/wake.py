@@ -1,4 +1,7 @@
-"""Pipe, sinks and wake oscillator integrated together: the lock-in curve over the wind speed, upwards and downwards."""
+"""Pipe, sinks and wake oscillator integrated together: the lock-in curve over the wind speed, upwards and downwards.
+
+Wake oscillator: Facchinetti et al. (2004), doi 10.1016/j.jfluidstructs.2003.12.004.
+"""
 
 from __future__ import annotations
 

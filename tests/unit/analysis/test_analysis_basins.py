@@ -9,7 +9,7 @@ from frahm.analysis.long_term import _row
 from frahm.analysis.modulated import basins
 from frahm.analysis.section import Section, Work
 from frahm.loads import operating_range
-from frahm.report.tables import basin_caption, coexisting_rows
+from frahm.report.motion_tables import basin_caption, coexisting_rows
 
 CASE = frahm.load_case("jacket-pipe").with_absorber(xi2=0.0085)
 DETACHED = -0.1  # below the upper saddle-node of the detached branch, -.09507 by collocation

@@ -97,9 +97,13 @@ def test_another_plane_of_the_map():
 def test_the_worst_case_is_no_smaller_than_any_attractor_nearby():
     worst = frahm.worst_case(CASE, detuning=(-0.05, 0.05), samples=16)
     assert worst.verified
-    for sigma in (worst.detuning - 0.004, worst.detuning + 0.004):
-        peaks = [a.pipe_peak for a in frahm.find_attractors(CASE, detuning=sigma, samples=16) if a.basin_fraction > 0]
-        assert max(peaks) <= worst.pipe_peak * 1.001
+    surveyed = [survey.frequency for survey in worst.surveys]
+    assert worst.frequency in surveyed
+    assert worst.relative_frequency in surveyed
+    for sigma in (worst.detuning - 0.004, worst.detuning + 0.004, -0.006, 0.037):  # the last in gaps between surveys
+        found = [a for a in frahm.find_attractors(CASE, detuning=sigma, samples=16) if a.basin_fraction > 0]
+        assert max(a.pipe_peak for a in found) <= worst.pipe_peak * 1.001
+        assert max(a.relative_peak for a in found) <= worst.relative_peak * 1.002
     assert worst.attractor.pipe_peak == worst.pipe_peak
     assert worst.detuning == pytest.approx(worst.frequency - OMEGA)
     assert worst.relative_peak >= worst.attractor.relative_peak

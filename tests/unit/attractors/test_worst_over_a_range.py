@@ -151,15 +151,3 @@ def test_what_lies_beyond_a_range_of_small_motions_does_not_speak_against_a_larg
     assert joined([large, small]).unverified == joined([small, large]).unverified == ()
     assert joined([near, small]).unverified == (doubt,)
     assert joined([large, replace(small, unverified=(doubt, "another"))]).unverified == ("another",)
-
-
-def test_between_the_frequencies_surveyed_nothing_is_larger():
-    """Where motions beat and are chaotic their size has many local maxima over frequency."""
-    worst = frahm.worst_case("jacket-pipe", samples=16)
-    surveyed = [survey.frequency for survey in worst.surveys]
-    assert worst.frequency in surveyed
-    assert worst.relative_frequency in surveyed
-    for detuning in np.linspace(-0.03, 0.045, 8) + 0.0007:
-        found = frahm.find_attractors("jacket-pipe", detuning=detuning, samples=8)
-        assert max(attractor.pipe_peak for attractor in found) < 1.002 * worst.pipe_peak
-        assert max(attractor.relative_peak for attractor in found) < 1.002 * worst.relative_peak

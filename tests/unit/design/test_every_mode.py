@@ -7,6 +7,7 @@ import pytest
 
 import frahm
 from frahm.assessment import damage_of_modes
+from frahm.attractors import worst_over
 from frahm.design import DesignSettings, verified_designs, with_design
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import conditions_of, exact_birth, exact_judgement
@@ -108,3 +109,21 @@ def test_the_damage_that_is_made_small_is_that_of_all_modes():
     assert len(parts) == 2
     assert best.value == pytest.approx(sum(part.damage_with for part in parts), rel=1e-4)
     assert parts[1].damage_with > 0.01 * best.value
+
+
+def test_a_maximum_where_symmetry_breaks_is_looked_at_from_beside():
+    """Exactly there motions come nearer as the square root of time: none settles, however long it is waited."""
+    case = frahm.load_case(Path(__file__).parents[2] / "cases" / "brace.yaml")
+    problem = Problem.of(case, settings_for(case, 0.02))
+    mass, stiffness, damping = np.array([48.9129070598039, 183253094.70546868, 589.4599658712729]) / case.pipe.mass
+    (mode, *_) = problem.modes_of_errors(with_design(case, frahm.DesignedAbsorber(mass, 0.0, stiffness, damping)))
+    off = Disturbance(pipe_frequency=0.9, lock_in=False)
+    system = off.of(mode.system)
+    curve = mode.windows.curve(mode.system, off)
+    breaking = [point.frequency for point in curve.special_points if point.kind == "branch-point"]
+    within = mode.windows.range(off, system.reference_frequency)
+    worst = worst_over(system, within, samples=16, min_basin=0.0, seed=1)
+    surveyed = np.array([survey.frequency for survey in worst.surveys])
+    assert breaking
+    assert all(np.min(np.abs(surveyed - at)) > 2e-4 * at for at in breaking)
+    assert worst.verified

@@ -7,8 +7,9 @@ import frahm
 from frahm.harmonic_balance import begin, find_branches
 from frahm.harmonic_balance.condensation import CondensedChange, coordinates, linear_part, unknowns
 from frahm.harmonic_balance.detached import _second_derivatives
-from frahm.harmonic_balance.equations import FoldEquations, TorusEquations
+from frahm.harmonic_balance.fold_equations import FoldEquations
 from frahm.harmonic_balance.seeds import stiffness_at
+from frahm.harmonic_balance.torus_equations import TorusEquations
 from frahm.systems import derivative_of, parameter_value, with_parameters
 
 AXES = [

@@ -6,10 +6,11 @@ from scipy.integrate import solve_ivp
 
 import frahm
 from frahm.harmonic_balance.condensation import condense
-from frahm.harmonic_balance.floquet import map_multipliers, monodromy, shifted_eigenvalues, variation_of
+from frahm.harmonic_balance.floquet import map_multipliers, monodromy, shifted_eigenvalues
 from frahm.harmonic_balance.hill import refine_exponents
 from frahm.harmonic_balance.kernels import harmonic_count, harmonics_of
 from frahm.harmonic_balance.orbits import peak_of
+from frahm.harmonic_balance.variation import variation_of
 
 KINDS = (("odd", True), ("any", False), ("sliding", True), ("heavy", False))
 CASES = [(seed, laws, odd) for seed in range(3) for laws, odd in KINDS]

@@ -13,8 +13,8 @@ from frahm.assessment import accepted
 from frahm.plotting.decision import DEVICES
 from frahm.report import decision, render_report
 from frahm.report.document import document_rows
+from frahm.report.input_tables import input_rows
 from frahm.report.references import reference_rows
-from frahm.report.tables import input_rows
 
 
 @pytest.fixture(scope="module")

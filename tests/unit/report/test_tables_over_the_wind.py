@@ -23,7 +23,7 @@ from frahm.errors import Outcome
 from frahm.plotting.basins import basin_map_figure
 from frahm.plotting.interactive import basin_map_plot, manifold_plot
 from frahm.plotting.static import manifold_figure
-from frahm.report import fatigue_tables, render_report, tables
+from frahm.report import check_tables, fatigue_tables, motion_tables, render_report, response_tables
 
 TUBE = frahm.load_case(Path(__file__).parents[2] / "cases" / "tube.yaml")
 
@@ -56,7 +56,11 @@ def test_no_table_over_the_wind_counts_detunings(analysis):
     assert len(found) > 8
     for table in (*found, results_text(analysis)):
         assert "rad/s" not in table, table[:300]
-    for head in (tables.special_point_head(analysis), tables.motion_head(analysis), tables.comparison_head(analysis)):
+    for head in (
+        response_tables.special_point_head(analysis),
+        motion_tables.motion_head(analysis),
+        check_tables.comparison_head(analysis),
+    ):
         assert "Wind [m/s]" in head
         assert not any(head_cell.endswith("[m]") for head_cell in head)
     assert fatigue_tables.BIN_HEAD[:2] == ["Wind [m/s]", "Frequency [Hz]"]
@@ -68,7 +72,7 @@ def test_every_place_is_the_wind_that_sheds_there(analysis):
     exact = analysis.results["response"]["harmonic-balance"]
     for point in exact["special_points"]:
         assert float(law.frequency(point["wind_speed"])) == pytest.approx(point["frequency"], rel=1e-9)
-    compared = [float(row[0]) for row in tables.comparison_rows(analysis)]
+    compared = [float(row[0]) for row in check_tables.comparison_rows(analysis)]
     assert compared == sorted(compared)
     assert lo * 0.999 <= compared[0]
     assert compared[-1] <= hi * 1.001
@@ -81,8 +85,8 @@ def test_every_place_is_the_wind_that_sheds_there(analysis):
 
 def test_a_bare_pipe_is_not_compared_with_itself():
     done = analyse(TUBE)
-    assert "Without absorber [mm]" not in tables.motion_head(done)
-    assert {len(row) for row in tables.motion_rows(done)} == {len(tables.motion_head(done))}
+    assert "Without absorber [mm]" not in motion_tables.motion_head(done)
+    assert {len(row) for row in motion_tables.motion_rows(done)} == {len(motion_tables.motion_head(done))}
     assert "without absorber" not in re.search(r'id="data-response-pipe">(.*?)</script>', render_report(done, {}))[1]
 
 
@@ -113,7 +117,7 @@ def test_what_stopped_a_motion_is_printed_beside_it(analysis, outcome):
     one = dict(analysis.results["attractors"][0], kind="unsettled", outcome=outcome)
     shown = dataclasses.replace(analysis, results=analysis.results | {"motions": [stopped, *rest], "attractors": [one]})
     words = Outcome[outcome.upper()].value
-    assert tables.motion_rows(shown)[0][2] == f"unsettled: {words}"
-    assert tables.attractor_rows(shown)[0][0] == f"unsettled: {words}"
+    assert motion_tables.motion_rows(shown)[0][2] == f"unsettled: {words}"
+    assert motion_tables.attractor_rows(shown)[0][0] == f"unsettled: {words}"
     assert results_text(shown).count(words) == 2
     assert render_report(shown, {}).count(words) >= 2

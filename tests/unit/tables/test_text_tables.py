@@ -92,6 +92,24 @@ def test_what_is_wrong_is_said_with_its_line(written, text, line, words):
     assert [word for word in words if word not in message] == [], message
 
 
+@pytest.mark.parametrize(
+    "head", ["time_ms", "t/ms", "time in ms", "timeMs", "TIME_MIN", "time:us", "t_h", "elapsed_hours", "ms"]
+)
+def test_a_time_whose_name_tells_another_unit_than_seconds_is_asked_about(written, head):
+    with pytest.raises(frahm.ParameterError) as refused:
+        frahm.read_time_series(written(f"{head};speed [m/s]\n1;2\n2;3\n"))
+    assert head in str(refused.value)
+    assert "in brackets" in str(refused.value)
+
+
+@pytest.mark.parametrize("head", ["time", "t", "time_s", "seconds", "clock"])
+def test_a_time_without_unit_says_that_seconds_are_assumed(written, head):
+    found = frahm.read_time_series(written(f"{head};speed [m/s]\n1;2\n2;3\n"))
+    assert found["time"].values.tolist() == [1.0, 2.0]
+    assert found["time"].attrs["assumed"] == f"seconds: the column {head!r} gives no unit"
+    assert "assumed" not in frahm.read_time_series(written("time [s];x\n1;2\n2;3\n"))["time"].attrs
+
+
 def test_dates_tell_when_they_start(written):
     found = frahm.read_time_series(written("when;x\n2024-03-01 12:00;1\n2024-03-02 12:00;2\n"))
     assert found["time"].values.tolist() == [0.0, 86_400.0]

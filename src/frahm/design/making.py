@@ -1,0 +1,32 @@
+"""The step from the chosen design to hardware: springs and dampers one can buy, tolerances, slopes."""
+
+from __future__ import annotations
+
+from frahm.design.exact import conditions_of, exact_birth
+from frahm.design.finalists import FAR
+from frahm.design.hardware import as_built, hardware
+from frahm.design.robustness import sensitivities, tolerance_band
+from frahm.design.work import DesignWork
+
+
+def made(work: DesignWork) -> None:
+    """The chosen design as hardware, with its tolerances and slopes, and with the force the springs really have."""
+    best, more = work.found.best, work.found.with_margin
+    if best is None or best.design is None:
+        return
+    work.step("hardware, tolerances and sensitivities")
+    design, found, problem, settings = best.design, work.found, work.problem, work.settings
+    stroke = max(best.relative_peak, more.relative_peak if more else 0.0)
+    room, stress = settings.spring_length, settings.spring_stress
+    found.hardware = hardware(work.case, design, stroke, best.frequency, room, stress)
+    found.tolerance = tolerance_band(
+        design, best.worst_pipe_peak, problem.modes_of, problem.disturbances, settings.seed
+    )
+    found.sensitivities = sensitivities(
+        design, problem.modes_of, problem.disturbances, problem.tier(settings.family).screening,
+        work.case.pipe.mass,
+    )  # fmt: skip
+    if design.kappa and not design.quintic:
+        built, most = problem.modes(as_built(work.case, design, stroke, room)), FAR * settings.force_margin
+        found.built = work.worst(built)
+        found.built_margin, _ = exact_birth(conditions_of(built, problem.disturbances), best.force_margin, most)

@@ -1,0 +1,81 @@
+"""Rows on the wind: similarity numbers, onset criteria, estimates and gusts, as text ready to be read."""
+
+from __future__ import annotations
+
+import math
+
+from frahm import readable
+from frahm.analysis import Analysis
+from frahm.report.numbers import number
+
+
+def similarity_rows(analysis: Analysis) -> list[tuple[str, str]]:
+    """Name and value of every similarity number."""
+    found = analysis.results["wind"]
+    band = found["lock_in_band"]
+    return [
+        ("Reduced velocity U / (f D)", number(found["reduced_velocity"], 3)),
+        ("Reynolds number", number(found["reynolds_number"], 3)),
+        ("Strouhal number", number(found["strouhal"], 3)),
+        ("Mass ratio m / (ρ D²)", number(found["mass_ratio"], 3)),
+        ("Mass damping K_s, the Scruton number", number(found["scruton_number"], 3)),
+        ("Skop-Griffin number S_G", number(found["skop_griffin_number"], 3)),
+        (f"Lock-in band [m/s], {band['standing']}", f"{number(band['low'], 3)} … {number(band['high'], 3)}"),
+        ("Time constant of the build-up 1/(ζω) [s]", number(found["build_up_time"], 3)),
+    ]
+
+
+def criterion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Name, condition, verdict, evidence and standing of every onset criterion."""
+    words = {True: "yes", False: "no", None: "not decided"}
+    return [
+        (row["name"], row["condition"], words[row["expects_vibration"]], row["detail"], row["standing"])
+        for row in analysis.results["wind"]["criteria"]
+    ]
+
+
+def estimate_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Name, ratio, amplitude, what went in and standing of every amplitude estimate."""
+    return [
+        (row["name"], number(row["ratio"], 3), readable.in_mm(row["amplitude"]), row["detail"], row["standing"])
+        for row in analysis.results["wind"]["estimates"]
+    ]
+
+
+def estimate_sentence(analysis: Analysis) -> str:
+    """The interval of the estimates beside the computed amplitude."""
+    found = analysis.results["wind"]
+    low, high, computed = (readable.in_mm(value) for value in (*found["interval"], found["computed"]))
+    used = f"this analysis uses the harmonic lift of the case, which gives {computed} mm over its range"
+    if sum(row["ratio"] is not None and not math.isnan(row["ratio"]) for row in found["estimates"]) == 1:
+        return f"No published estimate can be given; {used}."
+    return f"The estimates span {low} … {high} mm; {used}."
+
+
+def load_cycle_row(analysis: Analysis) -> tuple[str, ...]:
+    """Name, number, what went in and standing of the number of load cycles at resonance."""
+    found = analysis.results["wind"]["load_cycles"]
+    return "EN 1991-1-4, load cycles at resonance", number(found["number"], 3), found["detail"], found["standing"]
+
+
+def unsteady_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+    """Quantity, value with absorbers and value without; one value if there are none."""
+    found = analysis.results["unsteady_wind"]
+    gusts = found["reduction_by_gusts"]
+    rows: list[tuple[str, ...]] = [
+        ("Largest pipe displacement [mm]", readable.in_mm(found["pipe_peak"]), readable.in_mm(found["bare_pipe_peak"])),
+        ("Pipe rms [mm]", readable.in_mm(found["pipe_rms"]), readable.in_mm(found["bare_pipe_rms"])),
+        ("Pipe rms in steady wind of the same mean [mm]", readable.in_mm(found["steady_pipe_rms"]),
+         readable.in_mm(found["bare_steady_pipe_rms"])),
+        ("Reduction by the gusts", _percent(gusts["with_absorbers"]), _percent(gusts["without_absorbers"])),
+        ("Reduction by the absorbers", _percent(found["reduction_by_absorbers"]), "-"),
+        ("Amplitude in steady resonant wind [mm]", "-", readable.in_mm(found["resonant_amplitude"])),
+        ("Build-up in steady resonant wind, time constant [s]", "-", number(found["build_up_time"])),
+    ]  # fmt: skip
+    if analysis.results["has_absorber"]:
+        return rows
+    return [(row[0], row[2]) for row in rows if row[2] != "-"]
+
+
+def _percent(value: float | None) -> str:
+    return "-" if value is None or not math.isfinite(value) else f"{value:.0%}"
