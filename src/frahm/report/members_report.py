@@ -13,11 +13,10 @@ from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.loads import amplitude_estimates, lock_in_band
 from frahm.plotting.members import save_member_figures
-from frahm.report.environment import kept_together, template
+from frahm.report.environment import kept_together, template, with_indices
 from frahm.report.numbers import number
 from frahm.report.references import Reference, reference_rows
 from frahm.report.report import REPORT_FILE, image_address
-from frahm.report.tables import with_indices
 from frahm.screening import FAIL, LOOK_CLOSER, NOT_JUDGED, PASS, MemberScreen, share
 
 Row = Mapping[str, Any]
