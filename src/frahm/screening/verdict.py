@@ -138,7 +138,7 @@ def _more_damage(found: Findings) -> Iterator[str]:
         )
     if row.ratio <= 1 < held / row.limit:
         yield (
-            f"{row.text}, but {held:.2g} if vortices locked in over the whole lock-in band as at the worst wind"
+            f"{row.text}, but {held:.3g} if vortices locked in over the whole lock-in band as at the worst wind"
             " (secondary): the truth lies between."
         )
 
