@@ -21,7 +21,7 @@ import scipy.linalg
 from frahm.absorbers.packed import pack_laws
 from frahm.arrays import Complexes, Floats
 from frahm.errors import ParameterError
-from frahm.harmonic_balance.kernels import stiffness
+from frahm.harmonic_balance.kernels import stiffnesses
 from frahm.systems import Derivative, System
 
 _PARALLEL = 1e-12  # sine of the angle between directions that are parallel but for rounding
@@ -103,11 +103,14 @@ def condense(system: System, forcing: Floats | None = None) -> Problem:
 
 def stiffness_at(pb: Problem, k: int, W: float) -> tuple[Complexes, Complexes]:
     """S (r, r) [N/m] and condensed force (r,) [N] at harmonic k of Omega = W [rad/s]."""
-    r = pb.M11.shape[0]
-    S, dS = np.empty((r, r), complex), np.empty((r, r), complex)
-    f, df = np.empty(r, complex), np.empty(r, complex)
-    stiffness(pb, 1j * k * W, S, dS, f, df)
-    return S, f
+    S, force = stiffnesses(pb, np.array([1j * k * W]))
+    return S[0], force[0]
+
+
+def stiffness_over(pb: Problem, k: int, W: Floats) -> tuple[Complexes, Complexes]:
+    """S (N, r, r) [N/m] and condensed force (N, r) [N] at harmonic k of Omega = W (N,) [rad/s]."""
+    S, force = stiffnesses(pb, 1j * k * W)
+    return S, force
 
 
 def coordinates(system: System) -> tuple[Floats, Floats]:

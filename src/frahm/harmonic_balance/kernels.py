@@ -107,6 +107,17 @@ def stiffness(pb, s, S, dS, force, dforce):
 
 
 @kernel
+def stiffnesses(pb, s):
+    """S (N, r, r) and condensed harmonic force (N, r) at N values of s."""
+    r = pb.M11.shape[0]
+    S, force = np.empty((s.size, r, r), np.complex128), np.empty((s.size, r), np.complex128)
+    dS, dforce = np.empty((r, r), np.complex128), np.empty(r, np.complex128)
+    for j in range(s.size):
+        stiffness(pb, s[j], S[j], dS, force[j], dforce)
+    return S, force
+
+
+@kernel
 def output_harmonic(pb, k, W, u, row):
     """Harmonic k of an output row from the relative coordinates u (r,) of that harmonic."""
     s = 1j * k * W

@@ -17,7 +17,7 @@ import numpy as np
 
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Complexes, Floats
-from frahm.harmonic_balance.condensation import Problem, stiffness_at, unknowns
+from frahm.harmonic_balance.condensation import Problem, stiffness_at, stiffness_over, unknowns
 from frahm.harmonic_balance.describing import Table, amplitude_table, outer_balances
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.shared_drive import shared_stiffnesses, solutions_at
@@ -216,8 +216,8 @@ def seeder_for(pb: Problem, window: Floats) -> Seeder:
     buckled = bool(pb.odd and outer_balances(pb, rest) > 0)
     if spring is not None and not buckled:
         return Seeder(pb, spring, None, False)
-    parts = [stiffness_at(pb, 1, float(W)) for W in window]
-    S, F = np.array([S[0, 0] for S, _ in parts]), np.array([F[0] for _, F in parts])
+    stiffness, force = stiffness_over(pb, 1, window)
+    S, F = stiffness[:, 0, 0], force[:, 0]
     with np.errstate(divide="ignore"):
         damped = np.where(S.imag > 0, np.abs(F) / S.imag, np.inf)
         linear = np.abs(F) / np.abs(S)

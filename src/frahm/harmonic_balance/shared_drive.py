@@ -24,7 +24,7 @@ import numpy as np
 
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import Problem, stiffness_at
+from frahm.harmonic_balance.condensation import Problem, stiffness_at, stiffness_over
 from frahm.polynomials import cubic_roots
 
 _POINTS = (192, 768, 3072)  # of an interval of y: the first, then what is tried where the degree says no
@@ -71,7 +71,7 @@ class Solutions:
 def shared_stiffnesses(pb: Problem, window: Floats) -> Floats | None:
     """k_i (r,) where `solutions_at` finds all first-harmonic solutions at frequencies of a window; None elsewhere."""
     k = cubic_stiffnesses(pb)
-    if k is None or any(shared_drive(*stiffness_at(pb, 1, float(W))) is None for W in window):
+    if k is None or any(shared_drive(S, F) is None for S, F in zip(*stiffness_over(pb, 1, window), strict=True)):
         return None
     return k
 

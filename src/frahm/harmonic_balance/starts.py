@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance.condensation import Problem, stiffness_at, unknowns
+from frahm.harmonic_balance.condensation import Problem, stiffness_at, stiffness_over, unknowns
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.root_counts import cubic_turns, extreme_turns, polynomial_counts, table_counts
 from frahm.harmonic_balance.search import Search
@@ -63,8 +63,8 @@ def starts_of(search: Search) -> Starts:
 def _counted(search: Search, grid: Floats) -> tuple[np.ndarray, list[Extreme]]:
     """Number of first-harmonic roots on a grid of frequencies, and the extremes of the force they need."""
     pb, e, table = search.problem, search.seeder.spring, search.seeder.table
-    parts = [stiffness_at(pb, 1, float(W)) for W in grid]
-    S, F = (np.array([part[which].flat[0] for part in parts]) for which in (0, 1))
+    stiffness, force = stiffness_over(pb, 1, grid)
+    S, F = stiffness[:, 0, 0], force[:, 0]
     counts, found = np.zeros(grid.size, np.int64), []
     if e is not None and e.size == 2 and e[0] == 0:
         counts = counts + [cubic_roots(s, f, e[1])[0] for s, f in zip(S, F, strict=True)]
