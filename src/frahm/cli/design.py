@@ -62,9 +62,8 @@ def design(
     from frahm.errors import ParameterError
 
     loaded = load_case(case)
-    folder = default_folder(loaded) if out is None else out
-    if out is None:
-        folder = folder.with_name(f"{folder.name}-design")
+    own = default_folder(loaded)
+    folder = own.with_name(f"{own.name}-design") if out is None else out
     if masses is not None and mass_ratio is not None:
         raise ParameterError("--masses", masses, "left out where --mass-ratio is given")
     given: dict[str, Any] = {
