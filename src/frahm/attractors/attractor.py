@@ -183,8 +183,8 @@ class AttractorSet(Sequence[Attractor]):
         rate, low, high = -100 * np.expm1(-rates * thousand)
         return (
             f"The {readable.motion(attractor.kind)} motion with a pipe peak of {attractor.pipe_peak:.4g} m is left in "
-            f"the end: in 1000 periods by {rate:.3g} % of the motions on it (95 % interval {low:.2g} to {high:.2g} %). Its share is "
-            f"that after {self.periods} periods."
+            f"the end: in 1000 periods by {rate:.3g} % of the motions on it (95 % interval {low:.2g} to {high:.2g} %). "
+            f"Its share is that after {self.periods} periods."
         )
 
     def unsettled(self, least: float, where: str = "") -> list[str]:
