@@ -3,7 +3,7 @@
 from frahm.analysis.analysis import STEPS, Analysis, Progress, Step, analyse, defaulted_fields, provenance, step_weights
 from frahm.analysis.margin import FORCE_MARGIN, margin_sentence
 from frahm.analysis.section import Check, Section, Work
-from frahm.analysis.store import load_analysis, read_summary, save_analysis
+from frahm.analysis.store import load_analysis, missing_arrays, read_summary, save_analysis
 
 __all__ = [
     "FORCE_MARGIN",
@@ -18,6 +18,7 @@ __all__ = [
     "defaulted_fields",
     "load_analysis",
     "margin_sentence",
+    "missing_arrays",
     "provenance",
     "read_summary",
     "save_analysis",
