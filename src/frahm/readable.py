@@ -28,9 +28,13 @@ def in_mpa(value: float | None) -> str:
     return _in_column(value, 1e-6)
 
 
-def motion(kind: str) -> str:
-    """A kind of motion in the one word that people read: a quasi-periodic one is a modulated one."""
-    return {"quasi-periodic": "modulated"}.get(kind, kind)
+def motion(kind: str, multiple: int = 0) -> str:
+    """A kind of motion in the one word that people read, and after how many periods it repeats if that is not one.
+
+    A quasi-periodic one is a modulated one.
+    """
+    word = {"quasi-periodic": "modulated"}.get(kind, kind)
+    return f"{word}, {multiple} periods" if multiple > 1 else word
 
 
 def frequency(value: float) -> str:

@@ -1,6 +1,7 @@
 """Damaged and malicious MAT and netCDF files end in a message, never with the process that reads them."""
 
 import io
+import struct
 import subprocess
 import sys
 import time
@@ -80,6 +81,58 @@ def test_a_small_file_cannot_take_much_memory(tmp_path):
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert int(done.stdout) < 300_000  # kB
+
+
+def element(kind, content):
+    return struct.pack("<II", kind, len(content)) + content + bytes(-len(content) % 8)
+
+
+def matrix(kind, shape, name, content):
+    sizes = struct.pack(f"<{len(shape)}i", *shape)
+    flags = element(6, struct.pack("<II", kind, 0))
+    return element(14, flags + element(5, sizes) + element(1, name) + content)
+
+
+def cell_of_empty_arrays(count):
+    """MAT file of a short vector and of one compressed cell of very many arrays without an entry."""
+    vector = matrix(6, (3, 1), b"time", element(9, struct.pack("<3d", 0, 1, 2)))
+    cell = zlib.compress(matrix(1, (count, 1), b"c", matrix(6, (0, 0), b"", element(9, b"")) * count), 9)
+    return mat_bytes(compressed=True)[:128] + vector + struct.pack("<II", 15, len(cell)) + cell
+
+
+def test_very_many_arrays_without_an_entry_are_refused(tmp_path):
+    path = tmp_path / "cells.mat"
+    path.write_bytes(cell_of_empty_arrays(120_000))
+    with pytest.raises(frahm.ParameterError, match="more than 100000 arrays"):
+        binary_content("mat", path)
+    path.write_bytes(cell_of_empty_arrays(1000))
+    assert len(binary_content("mat", path)["c"]) == 1000
+
+
+def test_very_many_fields_of_structures_are_refused(tmp_path):
+    path = tmp_path / "many.mat"
+    names = element(5, struct.pack("<i", 8)) + element(1, b"a".ljust(8, b"\0") + b"b".ljust(8, b"\0"))
+    empty = matrix(6, (0, 0), b"", element(9, b""))
+    fields = matrix(2, (70_000, 1), b"s", names + empty * 140_000)
+    path.write_bytes(mat_bytes(compressed=True)[:128] + fields)
+    with pytest.raises(frahm.ParameterError, match="more than 100000 arrays"):
+        binary_content("mat", path)
+
+
+def test_numbers_stored_shorter_than_they_are_count_as_large_as_they_come(tmp_path):
+    path = tmp_path / "short.mat"
+    parts = element(2, bytes(1_000_000))  # of complex numbers: the file stores them as one byte each
+    path.write_bytes(mat_bytes(compressed=True)[:128] + matrix(6 | 0x800, (1_000_000, 1), b"x", parts + parts))
+    with pytest.raises(frahm.ParameterError, match="larger than 10 MB"):
+        binary_content("mat", path, most_bytes=10_000_000)
+
+
+def test_very_much_text_is_refused(tmp_path):
+    path = tmp_path / "text.nc"
+    with h5py.File(path, "w") as file:
+        file.create_dataset("x", data=np.array([b"a long text of some forty letters in all"] * 500_000))
+    with pytest.raises(frahm.ParameterError, match="more text"):
+        binary_content("netcdf", path)
 
 
 def test_an_array_that_is_only_declared_is_refused(tmp_path):

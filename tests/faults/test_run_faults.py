@@ -1,6 +1,7 @@
 """What can go wrong around `frahm run`: one message, the exit code for it, and nothing half written."""
 
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -97,7 +98,12 @@ def test_a_full_disk_is_one_message_and_the_summary_is_kept(stored, case, tmp_pa
     assert "results.nc" in done.stderr
     assert "File too large" in done.stderr
     assert {entry.name for entry in folder.iterdir()} == {"case.yaml", "summary.json"}
-    assert refused(run("show", folder), "results.nc", "no such file")
+    shown, whole = run("show", folder), run("show", stored)
+    assert (shown.exit_code, shown.stdout) == (0, whole.stdout)
+    assert shown.stderr.count("\n") == 1
+    assert "The arrays are missing" in shown.stderr
+    assert whole.stderr == ""
+    assert refused(run("report", folder), "The arrays are missing", "results.nc", "no such file")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
@@ -111,13 +117,37 @@ def test_output_to_a_full_device_is_one_message(command):
     assert ("No space left on device" in done.stderr) == (command != "check jacket-pip")
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="streams are closed differently there")
+@pytest.mark.parametrize("how", ["closed", "nobody reads", *(["full"] if Path("/dev/full").exists() else [])])
+@pytest.mark.parametrize(
+    ("command", "code"), [("check nope.yaml", 2), ("check --nope", 2), ("nope", 2), ("check jacket-pipe", 0)]
+)
+def test_an_error_stream_that_takes_nothing_leaves_the_exit_code_as_it_is(tmp_path, how, command, code):
+    called = [sys.executable, "-m", "frahm", *command.split()]
+    if how == "closed":
+        done = subprocess.run(["sh", "-c", 'exec "$@" 2>&-', "sh", *called], stdout=subprocess.DEVNULL, check=False)
+    elif how == "full":
+        with open("/dev/full", "w") as full:
+            done = subprocess.run(called, stdout=subprocess.DEVNULL, stderr=full, check=False)
+    else:
+        reader, writer = os.pipe()
+        os.close(reader)
+        done = subprocess.run(called, stdout=subprocess.DEVNULL, stderr=writer, check=False)
+        os.close(writer)
+    assert done.returncode == code
+
+
 def test_a_missing_case_leaves_nothing_behind(tmp_path):
     assert refused(run("run", "jacket-pip", "--out", tmp_path / "o"), "Did you mean 'jacket-pipe'")
     assert not (tmp_path / "o").exists()
 
 
-@pytest.mark.parametrize("command", ["show", "report"])
-@pytest.mark.parametrize("damage", ["missing", "empty folder", "no json", "other json", "no arrays", "damaged arrays"])
+DAMAGED = ("missing", "empty folder", "no json", "other json", "damaged arrays")
+
+
+@pytest.mark.parametrize(
+    ("command", "damage"), [*(("show", one) for one in DAMAGED), *(("report", one) for one in (*DAMAGED, "no arrays"))]
+)
 def test_damaged_results(stored, tmp_path, command, damage):
     folder = tmp_path / "o"
     if damage != "missing":

@@ -310,7 +310,9 @@ def test_a_figure_of_a_transient_does_not_keep_the_answer_from_being_verified(tm
     summary = json.loads((tmp_path / "o" / "summary.json").read_text())
     assert summary["unverified"] == []
     assert summary["results"]["acceptance"]["verdict"] == ("pass" if code == 0 else "fail")
-    assert {row["kind"] for row in summary["results"]["motions"]} == {"unsettled"}
+    for row in summary["results"]["motions"]:  # the system is linear: what the transient tends to is known
+        assert row["kind"] == "periodic"
+        assert row["pipe_peak"] == pytest.approx(row["pipe_peak_without_absorber"], rel=1e-9)
     assert any("has not settled within 100 periods" in note for note in summary["results"]["notes"])
 
 

@@ -14,7 +14,7 @@ from frahm.analysis.analysis import (
 from frahm.analysis.linear import bare_motions
 from frahm.analysis.margin import FORCE_MARGIN, margin_sentence
 from frahm.analysis.section import Check, Section, Work
-from frahm.analysis.store import load_analysis, read_summary, save_analysis
+from frahm.analysis.store import load_analysis, missing_arrays, read_summary, save_analysis
 
 __all__ = [
     "FORCE_MARGIN",
@@ -30,6 +30,7 @@ __all__ = [
     "defaulted_fields",
     "load_analysis",
     "margin_sentence",
+    "missing_arrays",
     "plain",
     "provenance",
     "read_summary",

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.analysis.linear import others_of
 from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
 from frahm.assessment import with_stress
@@ -54,7 +55,7 @@ def worst(work: Work) -> Section:
         return Section(unverified=(f"The worst case over the range of operation was not found: {refused}",))
     motion, first = joined(motions), parts[0]
     reference = motion.frequency - motion.detuning
-    row = motion.row() | {
+    row = _worst_row(motion) | {
         "relative_detuning": motion.relative_frequency - reference,
         "min_basin": first.min_basin,
         "not_excluded": max(part.not_excluded for part in parts),
@@ -87,7 +88,11 @@ def _range_row(work: Work) -> dict[str, Any]:
 
 
 def _mode_row(case: Case, motion: WorstMotion) -> dict[str, Any]:
-    return {"mode": case.pipe.governing_mode, "natural_frequency": case.pipe.frequency, **motion.row()}
+    return {"mode": case.pipe.governing_mode, "natural_frequency": case.pipe.frequency, **_worst_row(motion)}
+
+
+def _worst_row(motion: WorstMotion) -> dict[str, Any]:
+    return motion.row() | {"kind": readable.motion(motion.kind)}
 
 
 def _nonlinear(work: Work) -> bool:
@@ -96,7 +101,7 @@ def _nonlinear(work: Work) -> bool:
 
 def _row(attractor: Attractor, within: OperatingRange) -> dict[str, Any]:
     return {
-        "kind": attractor.kind,
+        "kind": readable.motion(attractor.kind),
         "pipe_peak": attractor.pipe_peak,
         "relative_peak": attractor.relative_peak,
         "pipe_rms": attractor.pipe_rms,

@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.analysis.linear import bare_amplitude
 from frahm.analysis.points import DESIGN_WIND, PointOfInterest, points_of_interest
 from frahm.analysis.ranges import growth_rates_at
 from frahm.analysis.section import FAIL, PASS, UNVERIFIED, Check, Section, Work
 from frahm.analysis.settling import KINDS, envelope_of, judge
+from frahm.analysis.tended import Lasting, lasting
 from frahm.arrays import Floats, labelled
 from frahm.errors import Outcome
 from frahm.harmonic_balance import is_linear
@@ -46,7 +48,13 @@ class Motion:
     start : float
         Time of the first sample kept [s].
     kind : str
-        "periodic", "modulated" or "unsettled".
+        "periodic", "modulated", "chaotic" or "unsettled": that of the lasting motion it tends to, where that is known.
+    multiple : int
+        Periods after which it repeats; 0 if it does not, or if nobody knows.
+    settled : bool
+        Whether the tail itself shows the lasting motion.
+    sizes : dict
+        Peaks, rms and envelope [m]: of the tail, or of the motion it tends to where the tail is a transient.
     spread : float
         Spread of the Poincare section, see `frahm.analysis.settling.section_spread`.
     bare : float
@@ -58,6 +66,9 @@ class Motion:
     tail: TimeHistory
     start: float
     kind: str
+    multiple: int
+    settled: bool
+    sizes: dict[str, Any]
     spread: float
     bare: float
 
@@ -66,13 +77,7 @@ def motions(work: Work) -> Section:
     """Motions from rest at every point of interest."""
     points = points_of_interest(work)
     found = [_motion(work, point) for point in points[:_MOST_POINTS]]
-    unsettled = [motion for motion in found if motion.kind == "unsettled"]
-    periods = work.case.analysis.periods
-    notes = tuple(
-        f"The motion from rest {motion.point.place} has not settled within {periods} periods:"
-        " its figure ends in a transient, which is no part of the answer."
-        for motion in unsettled
-    )
+    notes = tuple(_transient(motion, work.case.analysis.periods) for motion in found if not motion.settled)
     return Section(
         results={"motions": [_summary(motion) for motion in found]},
         data={"motions": _motions_dataset(found), "spectra": _spectra_dataset(found)},
@@ -82,6 +87,14 @@ def motions(work: Work) -> Section:
             "These motions were integrated from rest: another start can lead to another motion.",
             *_left_out(points[_MOST_POINTS:]),
         ),
+    )
+
+
+def _transient(motion: Motion, periods: int) -> str:
+    known = motion.kind != "unsettled"
+    return (
+        f"The motion from rest {motion.point.place} has not settled within {periods} periods: its figure ends in a"
+        f" transient, which is no part of the answer{', and its numbers are of the motion it tends to' * known}."
     )
 
 
@@ -95,12 +108,15 @@ def _motion(work: Work, point: PointOfInterest) -> Motion:
     system = work.system if point.key == DESIGN_WIND else work.driven(work.system.reference_frequency + point.detuning)
     history, start = _followed(system, point.detuning, work.case.analysis.periods)
     tail = history.last(max(1, math.floor(_TAIL * history.periods)))
-    kind, spread = judge(history)
-    if kind == "modulated" and is_linear(system):  # what beats there is free motion that still dies out
-        kind = "unsettled"
+    judged, spread = judge(history)
+    if judged == "modulated" and is_linear(system):  # what beats there is free motion that still dies out
+        judged = "unsettled"
+    known = lasting(work, point.key, history, judged) or Lasting(judged, int(judged == "periodic"), {})
+    settled = "unsettled" not in (judged, known.kind)
+    sizes = _sizes(history, tail) | ({} if settled else known.sizes)
     within = None if point.key == DESIGN_WIND else work.range  # the range may leave the design wind out
     bare = float(bare_amplitude(work.case, history.frequency, within)[0])
-    return Motion(point, history, tail, start, kind, spread, bare)
+    return Motion(point, history, tail, start, known.kind, known.multiple, settled, sizes, spread, bare)
 
 
 def _followed(system: System, detuning: float, periods: int) -> tuple[TimeHistory, float]:
@@ -119,7 +135,6 @@ def _followed(system: System, detuning: float, periods: int) -> tuple[TimeHistor
 
 
 def _summary(motion: Motion) -> dict[str, Any]:
-    peaks, (low, high) = motion.tail.peaks(), _peak_range(motion)
     return {
         "key": motion.point.key,
         "reason": motion.point.reason,
@@ -127,10 +142,8 @@ def _summary(motion: Motion) -> dict[str, Any]:
         "frequency": motion.history.frequency,
         "wind_speed": motion.point.wind_speed,
         "kind": motion.kind,
-        "pipe_peak": peaks.pipe,
-        "relative_peak": peaks.relative,
-        "pipe_rms": motion.tail.rms,
-        "pipe_envelope": [low, high],
+        "period_multiple": motion.multiple,
+        **motion.sizes,
         "section_spread": motion.spread,
         "pipe_peak_whole_run": motion.history.peaks().pipe,
         "pipe_peak_without_absorber": motion.bare,
@@ -138,12 +151,14 @@ def _summary(motion: Motion) -> dict[str, Any]:
     }
 
 
-def _peak_range(motion: Motion) -> tuple[float, float]:
-    """Smallest and largest peak |x1| of a period within the tail [m]; NaN if the run failed."""
-    low, high = envelope_of(motion.tail.pipe, SAMPLES_PER_PERIOD)
-    peaks = np.maximum(high, -low)
-    known = peaks.size > 0 and motion.history.outcome.ok
-    return (float(peaks.min()), float(peaks.max())) if known else (math.nan, math.nan)
+def _sizes(history: TimeHistory, tail: TimeHistory) -> dict[str, Any]:
+    """Peaks, rms, and smallest and largest peak |x1| of a period within the tail [m]; NaN if the run failed."""
+    peaks = tail.peaks()
+    low, high = envelope_of(tail.pipe, SAMPLES_PER_PERIOD)
+    each = np.maximum(high, -low)
+    known = each.size > 0 and history.outcome.ok
+    envelope = [float(each.min()), float(each.max())] if known else [math.nan, math.nan]
+    return {"pipe_peak": peaks.pipe, "relative_peak": peaks.relative, "pipe_rms": tail.rms, "pipe_envelope": envelope}
 
 
 def _finished(found: list[Motion]) -> Check:
@@ -157,18 +172,18 @@ def _finished(found: list[Motion]) -> Check:
 
 
 def _expected(work: Work, found: list[Motion]) -> Iterable[Check]:
-    """Where every periodic response is clearly unstable, the exact motion must be modulated."""
+    """Where every periodic response is clearly unstable, the exact motion must be another one."""
     if "response" not in work.done.data:
         return
     curve = work.done.data["response"]
     inside = [m for m in found if _leaves(growth_rates_at(curve, m.point.detuning), m)]
     if not inside:
         return
-    name = "Where no periodic response is stable, the motion is modulated"
-    text = ", ".join(f"{m.kind} {m.point.place}" for m in inside)
-    kinds = {m.kind for m in inside}
-    status = PASS if kinds == {"modulated"} else (FAIL if "periodic" in kinds else UNVERIFIED)
-    yield Check(name, status, f"Integrated: {text}.")
+    name = "Where no response of the excitation's period is stable, no motion repeats every period"
+    text = "; ".join(f"{readable.motion(m.kind, m.multiple)} {m.point.place}" for m in inside)
+    repeats = any(m.kind == "periodic" and m.multiple == 1 for m in inside)
+    known = all(m.kind != "unsettled" for m in inside)
+    yield Check(name, FAIL if repeats else PASS if known else UNVERIFIED, f"Integrated: {text}.")
 
 
 def _leaves(growth: Floats, motion: Motion) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.time_integration import TimeHistory
 
-KINDS = ("periodic", "modulated", "unsettled")
+KINDS = ("periodic", "modulated", "unsettled", "chaotic")
 PERIODIC_BELOW = 1e-3
 STEADY_WITHIN = 0.3
 _SHORTEST = 80

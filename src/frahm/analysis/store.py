@@ -44,8 +44,15 @@ def save_analysis(analysis: Analysis, folder: str | Path) -> list[Path]:
     return [folder / name for name in (CASE_FILE, SUMMARY_FILE, ARRAYS_FILE)]
 
 
-def load_analysis(folder: str | Path) -> Analysis:
+def load_analysis(folder: str | Path, *, arrays: bool = True) -> Analysis:
     """Read what `save_analysis` wrote.
+
+    Parameters
+    ----------
+    folder : str or Path
+        The folder.
+    arrays : bool
+        Whether to read the arrays, too; without them `data` is empty and all numbers are there.
 
     Raises
     ------
@@ -54,7 +61,7 @@ def load_analysis(folder: str | Path) -> Analysis:
     """
     folder = Path(folder)
     summary = read_summary(folder)
-    data = _read_arrays(folder / ARRAYS_FILE)
+    data = _read_arrays(folder / ARRAYS_FILE) if arrays else {}
     with door("DIR", str(folder), _ALLOWED, f"{SUMMARY_FILE} is damaged."):
         results = summary["results"]
         notes, interrupted = results.pop("notes"), results.pop("interrupted")
@@ -68,6 +75,14 @@ def load_analysis(folder: str | Path) -> Analysis:
             interrupted=bool(interrupted),
             version=str(summary["frahm"]),
         )
+
+
+def missing_arrays(folder: str | Path) -> str:
+    """A sentence if the arrays of an analysis are not there, as after a run whose disk was full; else empty."""
+    path = Path(folder) / ARRAYS_FILE
+    if path.exists():
+        return ""
+    return f"The arrays are missing (no such file: {path}): frahm run on {CASE_FILE} makes them again."
 
 
 def read_summary(folder: str | Path) -> dict[str, Any]:
@@ -133,6 +148,7 @@ def _read_arrays(path: Path) -> dict[str, xr.Dataset]:
     try:
         whole = netcdf_dataset(existing_file(path, largest=MOST_BYTES))
     except ParameterError as error:
-        raise ParameterError("DIR", str(path.parent), allowed, hint=error.hint) from None
+        hint = missing_arrays(path.parent) or error.hint
+        raise ParameterError("DIR", str(path.parent), allowed, hint=hint) from None
     with door("DIR", str(path.parent), allowed, "It is damaged or not a results file."):
         return separated(whole)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from scipy.stats import beta
 
+from frahm import readable
 from frahm.arrays import Floats, labelled
 from frahm.attractors.regions import Region
 from frahm.errors import Outcome
@@ -181,9 +182,9 @@ class AttractorSet(Sequence[Attractor]):
         rates = np.array([attractor.escape_rate, *attractor.escape_interval])
         rate, low, high = -100 * np.expm1(-rates * thousand)
         return (
-            f"The {attractor.kind} motion with a pipe peak of {attractor.pipe_peak:.4g} m is left in the end: in 1000 "
-            f"periods by {rate:.3g} % of the motions on it (95 % interval {low:.2g} to {high:.2g} %). Its share is "
-            f"that after {self.periods} periods."
+            f"The {readable.motion(attractor.kind)} motion with a pipe peak of {attractor.pipe_peak:.4g} m is left in "
+            f"the end: in 1000 periods by {rate:.3g} % of the motions on it (95 % interval {low:.2g} to {high:.2g} %). "
+            f"Its share is that after {self.periods} periods."
         )
 
     def unsettled(self, least: float, where: str = "") -> list[str]:

@@ -78,14 +78,17 @@ def show(folder: FolderArgument) -> None:
     if text is not None:
         say(text)
         return
-    from frahm.analysis import load_analysis
+    from frahm.analysis import load_analysis, missing_arrays
     from frahm.cli.results import results_text
     from frahm.errors import door
 
-    analysis = load_analysis(folder)
+    problem = missing_arrays(folder)
+    analysis = load_analysis(folder, arrays=not problem)
     with door("DIR", str(folder), "a folder that `frahm run` wrote", "summary.json is damaged."):
         text = results_text(analysis)
     say(text)
+    if problem:
+        say(f"frahm: {problem} What is said here is complete without them.", err=True)
 
 
 def warmup() -> None:

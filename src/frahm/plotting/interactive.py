@@ -43,6 +43,7 @@ CONFIG = {
     "responsive": True,
     "modeBarButtonsToRemove": ["select2d", "lasso2d", "autoScale2d"],
 }
+_MOTION_SYMBOLS = {"periodic": "circle-open", "modulated": "diamond", "chaotic": "square", "unsettled": "x"}
 _AXIS = {
     "showline": True, "ticks": "outside", "showgrid": False, "zeroline": False, "automargin": True,
     "linecolor": INK, "tickcolor": INK, "gridcolor": GRID, "title": {"standoff": 15},
@@ -228,7 +229,7 @@ def _add_folds(figure: PlainFigure, folds: dict[str, Any]) -> None:
 def _add_motions(figure: PlainFigure, motions: list[MotionView], quantity: str, axis: str) -> list[float]:
     """Mark the integrated motions, a modulated one with the range of its peaks; return the heights."""
     heights: list[float] = []
-    for kind, symbol in (("periodic", "circle-open"), ("modulated", "diamond"), ("unsettled", "x")):
+    for kind, symbol in _MOTION_SYMBOLS.items():
         chosen = [m for m in motions if m.kind == kind and np.isfinite(m.peaks(quantity)[1])]
         if not chosen:
             continue

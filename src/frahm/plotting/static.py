@@ -213,6 +213,6 @@ def _draw_motion(axes: Axes, motion: MotionView, quantity: str, axis: str) -> fl
         axes.plot(x, MM * high, "o", markersize=5, markerfacecolor="none", color=GREEN, label=shown)
     else:
         axes.plot([x] * 2, [MM * low, MM * high], "-", color=GREEN, linewidth=1.0)
-        marker = "D" if motion.kind == "modulated" else "x"
+        marker = {"modulated": "D", "chaotic": "s"}.get(motion.kind, "x")
         axes.plot(x, MM * high, marker, markersize=4, color=GREEN, linestyle="none", label=shown)
     return high

@@ -53,7 +53,7 @@ class MotionView:
 
     @property
     def kind(self) -> str:
-        """Periodic, modulated or unsettled."""
+        """Periodic, modulated, chaotic or unsettled."""
         return str(self.facts["kind"])
 
     @property
@@ -115,9 +115,11 @@ def motion_views(results: dict[str, Any], data: dict[str, xr.Dataset]) -> list[M
 
 
 def trajectory_to_show(views: list[MotionView]) -> MotionView | None:
-    """The motion shown on the slow manifold: modulated and nearest to the natural frequency, or else the nearest."""
+    """The motion shown on the slow manifold: one that does not repeat, if any, nearest to the natural frequency."""
     with_sink = [view for view in views if view.slow is not None]
-    return min(with_sink, key=lambda view: (view.kind != "modulated", abs(view.detuning)), default=None)
+    return min(
+        with_sink, key=lambda view: (view.kind not in ("modulated", "chaotic"), abs(view.detuning)), default=None
+    )
 
 
 def manifold_height(manifold: xr.Dataset, motion: MotionView | None, folds: dict[str, Any] | None) -> float:

@@ -39,9 +39,9 @@ def motion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
 
 
 def _ended(motion: Mapping[str, Any]) -> str:
-    """Kind of a motion, and what stopped its integration if something did."""
+    """Kind of a motion, after how many periods it repeats, and what stopped its integration if something did."""
     outcome = Outcome[str(motion["outcome"]).upper()]
-    kind = readable.motion(str(motion["kind"]))
+    kind = readable.motion(str(motion["kind"]), motion.get("period_multiple", 0))
     return kind if outcome.ok else f"{kind}: {outcome.value}"
 
 
@@ -49,7 +49,7 @@ def attractor_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     """Kind, peaks, envelope, basin fraction with its interval, and whether the motion from rest ends there."""
     return [
         (
-            _kind(found),
+            _ended(found),
             *map(readable.in_mm, (found["pipe_peak"], found["pipe_envelope"][0], found["relative_peak"])),
             *_basin(found),
         )
@@ -61,18 +61,12 @@ def coexisting_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     """Place, kind, peaks and basin of every attractor at frequencies of the range that have several."""
     return [
         (
-            where(found), _kind(found),
+            where(found), _ended(found),
             *map(readable.in_mm, (found["pipe_peak"], found["relative_peak"])),
             *_basin(found),
         )
         for found in analysis.results.get("coexisting", [])
     ]  # fmt: skip
-
-
-def _kind(found: dict[str, Any]) -> str:
-    multiple = found["period_multiple"]
-    kind = _ended(found)
-    return f"{kind}, {multiple} periods" if multiple > 1 else kind
 
 
 def _basin(found: dict[str, Any]) -> tuple[str, str, str]:

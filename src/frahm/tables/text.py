@@ -6,7 +6,9 @@ import contextlib
 import csv
 import datetime
 import itertools
+import math
 import re
+import sys
 from array import array
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -161,8 +163,9 @@ class _Reader:
         if len(cells) == len(self.heads) and self._is_plain(line):
             with contextlib.suppress(ValueError):
                 row = list(map(float, cells))
-                self.mark = "." if "." in line else self.mark
-                return row
+                if math.isfinite(sum(row)):  # else a cell is too large for a number, or says nan or inf
+                    self.mark = "." if "." in line else self.mark
+                    return row
         return [self._number(number, i, cell) for i, cell in enumerate(self._of_width(number, line))]
 
     def _is_plain(self, line: str) -> bool:
@@ -204,7 +207,10 @@ class _Reader:
             raise self._refusal(line, column, cell, "one decimal sign in the whole file",
                                 f"Lines above have the sign {self.mark!r}.")  # fmt: skip
         self.mark = self.mark or mark
-        return float(text.replace(",", "."))
+        value = float(text.replace(",", "."))
+        if not math.isfinite(value) and any(map(str.isdigit, text)):  # nan and inf are said in words
+            raise self._refusal(line, column, cell, f"a number of at most {sys.float_info.max:.2g} in size")
+        return value
 
     def _date(self, line: int, column: int, cell: str) -> datetime.datetime:
         try:

@@ -13,6 +13,8 @@ from typing import Any, BinaryIO
 _BLOCK = 1 << 20
 _HEAD = 128  # bytes before the first element of a MAT file of version 5
 _COMPRESSED = 15
+_MOST_LEAVES = 100_000  # arrays, texts and the like: each takes far more memory than its bytes
+_MOST_TEXT = 16_000_000  # bytes of text, which the other side takes apart into many small pieces
 _DAMAGED = "It is damaged."
 _COMPOUND = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"  # what files of the old kind, and encrypted ones, begin with
 _MOST_ENTRIES, _MOST_ROWS, _WIDEST, _LONGEST, _HUGE = 2000, 20_000, 200, 1000, 1e300
@@ -26,11 +28,21 @@ class RefusedError(Exception):
 class Message:
     """What goes back: a tree of text and numbers, and the arrays its leaves refer to."""
 
-    def __init__(self) -> None:
+    def __init__(self, most_bytes: int = 0) -> None:
         self.arrays: list[Any] = []
+        self._most, self._bytes, self._leaves = most_bytes, 0, 0
+
+    def count(self) -> None:
+        """One leaf more, of whatever kind."""
+        self._leaves += 1
+        if self._leaves > _MOST_LEAVES:
+            raise RefusedError(f"It holds more than {_MOST_LEAVES} arrays, texts and attributes.")
 
     def array(self, values: Any) -> list[Any]:
-        """A leaf that is an array of numbers."""
+        """A leaf that is an array of numbers; it may be larger than in the file, which can store it shorter."""
+        self._bytes += values.nbytes
+        if self._bytes > self._most:
+            raise RefusedError(f"Its arrays are larger than {self._most // 1_000_000} MB.")
         self.arrays.append(values)
         return ["array", len(self.arrays) - 1]
 
@@ -55,10 +67,11 @@ def main() -> None:
     stream = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # whatever a library prints is no part of the answer
     _bound(int(memory), float(seconds))
-    message, most = Message(), int(most_bytes)
+    most = int(most_bytes)
+    message = Message(most)
     try:
         content = {"mat": _mat, "netcdf": _netcdf, "xlsx": _xlsx}[kind](path, most, message)
-        message.send(stream, {"content": ["mapping", content]}, most // 4)
+        message.send(stream, {"content": ["mapping", content]}, min(most // 4, _MOST_TEXT))
     except RefusedError as refused:
         Message().send(stream, {"problem": str(refused)})
     except MemoryError:
@@ -146,6 +159,7 @@ def _leaf(value: Any, message: Message) -> Any:
     """A variable as text, an array, a list or a mapping; None for what is none of them."""
     import numpy as np
 
+    message.count()
     if isinstance(value, str):
         return value
     if not isinstance(value, np.ndarray):
@@ -214,6 +228,7 @@ def _whole(attributes: dict[str, Any], variables: dict[str, Any], message: Messa
 
 
 def _variable(values: Any, dims: Any, attributes: dict[str, Any], message: Message) -> list[Any]:
+    message.count()
     data = None
     if values.dtype.kind in "biufc":
         data = message.array(values)
@@ -231,6 +246,7 @@ def _attributes(attributes: dict[str, Any], message: Message) -> list[Any]:
 def _attribute(value: Any, message: Message) -> Any:
     import numpy as np
 
+    message.count()
     array = np.asarray(value)
     if array.dtype.kind in "biufc":
         return message.array(array)

@@ -8,6 +8,7 @@ import traceback
 from collections.abc import Mapping
 from typing import Any
 
+from dash.exceptions import DependencyException
 from flask import Flask, Response, request
 from werkzeug.exceptions import HTTPException
 
@@ -128,6 +129,8 @@ def answer_problems(server: Flask) -> None:
     def wrong(error: Exception) -> Response:
         if isinstance(error, ParameterError):
             return _line(str(error), 400)
+        if isinstance(error, DependencyException):  # a script or style of the page that there is not
+            return _line(f"{request.method} {request.path}: Not Found", 404)
         if isinstance(error, HTTPException):
             return _line(f"{request.method} {request.path}: {error.name}", error.code or 400)
         traceback.print_exception(error)

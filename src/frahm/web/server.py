@@ -19,6 +19,7 @@ from frahm.web.scope import Axis
 from frahm.web.sessions import Sessions
 
 DEFAULT_PORT = 8050
+_PATIENCE = 10.0  # [s] until more of a body must have come, or more of an answer been taken
 
 
 class _Quiet(WSGIRequestHandler):
@@ -26,6 +27,12 @@ class _Quiet(WSGIRequestHandler):
 
     protocol_version = "HTTP/1.1"
     disable_nagle_algorithm = True  # head and body are sent one after the other: neither may wait for the other
+
+    def run_wsgi(self) -> None:
+        """Answer one request; a body that is not sent is waited for only so long."""
+        self.connection.settimeout(_PATIENCE)
+        super().run_wsgi()
+        self.connection.settimeout(None)  # between requests a page may be quiet for as long as it likes
 
     def log_request(self, *arguments: Any) -> None:
         """Say nothing."""

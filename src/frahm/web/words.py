@@ -143,7 +143,8 @@ def _attractor_cells(row: dict[str, Any]) -> list[html.Td]:
 
     low, high = (100 * share for share in row["basin_interval"])
     share = "-" if row["basin_fraction"] is None else f"{100 * row['basin_fraction']:.3g} % ({low:.2g} to {high:.3g} %)"
-    kind = "; ".join(word for word in (row["kind"], "from rest" if row["from_rest"] else "", row["outcome"]) if word)
+    name = readable.motion(row["kind"])
+    kind = "; ".join(word for word in (name, "from rest" if row["from_rest"] else "", row["outcome"]) if word)
     numbers = [_metres(row[name], unit="") for name in ("pipe_peak", "relative_peak")]
     return [html.Td(kind), *(html.Td(text, className="number") for text in (*numbers, share))]
 

@@ -77,6 +77,9 @@ def test_every_way_to_write_a_table_gives_the_same_numbers(written, text, encodi
         ("t,x\n2024-01-01T00:00,1\n2024-13-01T00:00,2\n", 3, ("2024-13-01", "a date")),
         ("t,x\n2024-01-01T00:00,1\n5,2\n", 3, ("given '5'", "a date")),
         ("t,x\n2024-01-01T00:00,1\n2024-01-01T01:00Z,2\n", 3, ("time zone",)),
+        ("t,x\n0,1\n1,1e999\n", 3, ("x: given '1e999'", "at most 1.8e+308")),
+        ("t;x\n0;-1,5e400\n1;2\n", 2, ("x: given '-1,5e400'", "at most 1.8e+308")),
+        (f"t,x\n0,{'9' * 5000}\n1,2\n", 2, ("x: given '999", "at most 1.8e+308")),
         ("t,x\n0,1\n1,2\n1,3\n", 4, ("ascends", "'t'")),
         ("t,x\n0,1\nnan,2\n2,3\n", 3, ("ascends",)),
         (f't,x\n0,"{"9" * 200_000}x"\n', 2, ("field larger",)),
@@ -90,6 +93,12 @@ def test_what_is_wrong_is_said_with_its_line(written, text, line, words):
     message = str(refused.value)
     assert f"a.csv:{line}: " in message
     assert [word for word in words if word not in message] == [], message
+
+
+def test_large_numbers_and_words_for_what_is_no_number_are_read(written):
+    found = frahm.read_table(written("t,x\n1e308,1e308\n-inf,nan\n2,INFINITY\n"))
+    np.testing.assert_array_equal(found["t"], [1e308, -np.inf, 2])
+    np.testing.assert_array_equal(found["x"], [1e308, np.nan, np.inf])
 
 
 @pytest.mark.parametrize(

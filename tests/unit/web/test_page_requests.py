@@ -3,6 +3,9 @@
 import copy
 import json
 import random
+import socket
+import threading
+from urllib import request
 
 import pytest
 
@@ -10,6 +13,7 @@ import frahm
 from frahm.web.app import build_app
 from frahm.web.controls import field_texts
 from frahm.web.presets import PRESETS
+from frahm.web.server import page_server
 from frahm.web.sessions import Sessions
 
 CASE = frahm.load_case("jacket-pipe")
@@ -142,3 +146,28 @@ def test_a_pipe_beyond_all_measure_is_explained_or_drawn(client, tuned, text):
 def test_only_identifiers_of_pages_are_listened_to(client, name):
     for path in ("alive", "closed"):
         assert refused_in_one_line(client.post(f"/{path}/{name}"))
+
+
+@pytest.mark.parametrize("path", ["nope/x.js", "dash/x.js", "dash/deps/nope.css", "dash/../x.js", "%00/x"])
+def test_a_script_of_the_page_that_there_is_not_is_not_found(client, capfd, path):
+    for answer in (client.get(f"/_dash-component-suites/{path}"), client.head(f"/_dash-component-suites/{path}")):
+        assert answer.status_code == 404
+    line = client.get(f"/_dash-component-suites/{path}").get_data(as_text=True)
+    assert line.count("\n") == 1
+    assert line.endswith("Not Found\n")
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_body_shorter_than_its_length_is_not_waited_for_without_end(monkeypatch, capfd):
+    monkeypatch.setattr("frahm.web.server._PATIENCE", 1.0)
+    with page_server(CASE, 0) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        request.urlopen(f"http://127.0.0.1:{server.port}/_dash-layout", timeout=60).read()  # until it is built
+        head = f"POST /drawn/response HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\nContent-Length: 100\r\n\r\n{{"
+        with socket.create_connection(("127.0.0.1", server.port), timeout=15) as connection:
+            connection.sendall(head.encode())
+            answer = b"".join(iter(lambda: connection.recv(4096), b""))
+        server.shutdown()
+    assert answer.startswith(b"HTTP/1.1 400 ")
+    assert answer.endswith(b"\r\n\r\nPOST /drawn/response: Bad Request\n")
+    assert "Traceback" not in "".join(capfd.readouterr())
