@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 HOUR, YEAR = 3600.0, 365.25 * 86_400.0  # [s]
 _MILLE = 1e3
+_MOST_LINES, _WIDEST, _FEW = 12, 110, 4  # of an object at a prompt: lines, characters of one, numbers told one by one
 
 
 def length(value: float) -> str:
@@ -71,3 +75,43 @@ def _digits(value: float) -> str:
         return f"{value:g}"
     places = 2 - math.floor(math.log10(abs(value)))
     return f"{value:.{max(places, 0)}f}" if 1e-4 < abs(value) < 1e7 else f"{value:.3g}"
+
+
+def summary(thing: Any) -> str:
+    """An object made of fields as it is shown at a prompt: a line each, at most twelve; arrays by shape and range."""
+    fields = [field.name for field in dataclasses.fields(thing)]
+    told = fields if len(fields) < _MOST_LINES else fields[: _MOST_LINES - 2]
+    lines = [type(thing).__name__, *(f"{name}: {_brief(getattr(thing, name))}" for name in told)]
+    if len(told) < len(fields):
+        lines.append(f"and {', '.join(fields[len(told) :])}")
+    return "\n  ".join(_cut(line) for line in lines)
+
+
+def listed(things: Sequence[Any], *sentences: str, name: str = "") -> str:
+    """A list with what is said of it, as it is shown at a prompt: how many of what it holds, then a line a sentence."""
+    what = f": {_brief(tuple(things))}" if things else "" if name else ": nothing"
+    lines = [f"{name or type(things).__name__}{what}", *filter(None, sentences)]
+    more = [f"and {len(lines) - _MOST_LINES + 1} more lines"] if len(lines) > _MOST_LINES else []
+    return "\n  ".join(_cut(line) for line in [*lines[: _MOST_LINES - len(more)], *more])
+
+
+def _brief(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if hasattr(value, "shape") and hasattr(value, "dtype") and value.ndim:
+        numbers = value.size and value.dtype.kind in "fiu"
+        ends = f", {value.min():.4g} ... {value.max():.4g}" if numbers else ""
+        return f"array of shape {value.shape}{ends}"
+    if isinstance(value, Mapping):
+        return f"{len(value)} entries: {', '.join(map(str, value))}" if value else "none"
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        plain = all(isinstance(item, str | int | float) for item in value)
+        if plain and len(value) <= _FEW:
+            return f"({', '.join(_brief(item) for item in value)})" if value else "none"
+        return f"{len(value)} of {type(value[0]).__name__}"
+    return type(value).__name__ if dataclasses.is_dataclass(value) else repr(value)
+
+
+def _cut(line: str) -> str:
+    flat = " ".join(line.split())
+    return flat if len(flat) <= _WIDEST else f"{flat[: _WIDEST - 4]} ..."

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frahm import __version__
+from frahm import __version__, readable
 from frahm.analysis.acceptance import acceptance, judged_limits
 from frahm.analysis.cross_check import cross_check
 from frahm.analysis.decision import decision
@@ -103,6 +103,8 @@ class Analysis:
     version : str
         Version of the package that made it.
     """
+
+    __repr__ = readable.summary
 
     case: Case
     results: dict[str, Any]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.arrays import Floats, labelled
 from frahm.assessment.rainflow_cycles import CONVENTION
 from frahm.attractors.attractor import KINDS
@@ -73,6 +74,8 @@ class FatigueDamage:
     case : Case
     settings : dict
     """
+
+    __repr__ = readable.summary
 
     damage_with: float
     damage_with_weighted: float

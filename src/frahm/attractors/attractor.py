@@ -80,6 +80,8 @@ class Attractor:
         DONE, or why the motion is unsettled.
     """
 
+    __repr__ = readable.summary
+
     kind: str
     frequency: float
     detuning: float
@@ -134,6 +136,15 @@ class AttractorSet(Sequence[Attractor]):
     unverified : tuple of str
         What the search for the periodic responses behind them could not verify; empty if nothing.
     """
+
+    def __repr__(self) -> str:
+        rows = [
+            f"{readable.motion(one.kind, one.period_multiple)}: pipe peak {readable.length(one.pipe_peak)},"
+            f" basin {100 * one.basin_fraction:.3g} %"
+            for one in self
+        ]
+        where = f"at {self.frequency:.6g} rad/s, {self.samples} initial states"
+        return readable.listed(self.attractors, where, *rows, *self.unverified, name=type(self).__name__)
 
     attractors: tuple[Attractor, ...]
     frequency: float

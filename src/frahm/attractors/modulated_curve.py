@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frahm import __version__
+from frahm import __version__, readable
 from frahm.arrays import Floats, labelled
 from frahm.attractors.cycle_branches import CRITICAL, End
 
@@ -105,6 +105,8 @@ class ModulatedCurve:
     system : str
         Name of the system.
     """
+
+    __repr__ = readable.summary
 
     frequency: Floats
     detuning: Floats

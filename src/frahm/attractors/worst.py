@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.arrays import Floats
 from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.attractors.bracketing import FINE, bracket, largest, pipe_size, rms_size, stroke_size
@@ -61,6 +62,14 @@ class WorstCase:
     others : tuple of WorstCase
         Of what else winds of the site excite, see `frahm.loads.other_ranges`; `motion` is the worst of all.
     """
+
+    def __repr__(self) -> str:
+        motion = self.motion
+        said = f"largest pipe motion {readable.length(motion.pipe_peak)} ({readable.motion(motion.kind)})"
+        where = f"{said} at {motion.frequency:.6g} rad/s, largest stroke {readable.length(motion.relative_peak)}"
+        asked = f"over {motion.range}, {motion.searched} frequencies, {motion.samples} initial states each"
+        sure = "verified" if motion.verified else "UNVERIFIED:"
+        return readable.listed((), where, asked, sure, *motion.unverified, name=type(self).__name__)
 
     motion: WorstMotion
     attractor: Attractor

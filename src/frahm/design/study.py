@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.arrays import labelled
 from frahm.attractors import WorstMotion
 from frahm.design.absorber import UNITS, DesignedAbsorber
@@ -53,6 +54,8 @@ class Rival:
     fatigue : dict or None
         Damage, life and utilisation over the climate of a case that asks for them.
     """
+
+    __repr__ = readable.summary
 
     name: str
     design: DesignedAbsorber | None
@@ -169,6 +172,8 @@ class DesignStudy:
     lasting : dict of str to Dataset
         Largest lasting motions of every device over the range, see `frahm.attractors.lasting_motions`.
     """
+
+    __repr__ = readable.summary
 
     case: Case
     settings: DesignSettings

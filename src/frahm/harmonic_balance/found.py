@@ -6,6 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TypeVar
 
+from frahm import readable
+
 T = TypeVar("T")
 
 MOST_POINTS = 30_000  # of all branches together, each counted with the work of its unknowns
@@ -28,6 +30,9 @@ class Found(list[T]):
         super().__init__(items)
         self.searched = searched
         self.unverified = unverified
+
+    def __repr__(self) -> str:
+        return readable.listed(self, self.searched, *self.unverified)
 
 
 @dataclass

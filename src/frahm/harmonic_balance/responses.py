@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from frahm import readable
 from frahm.arrays import Complexes, Floats, frozen
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
@@ -64,6 +65,8 @@ class PeriodicResponse:
     symmetric : bool
         Whether x(t + T/2) = -x(t).
     """
+
+    __repr__ = readable.summary
 
     frequency: float
     harmonics: dict[int, Complexes]

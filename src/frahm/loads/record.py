@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic_core import PydanticCustomError
 
+from frahm import readable
 from frahm.arrays import Floats, finite_array, frozen, labelled
 from frahm.case.table_files import table_rows
 from frahm.case.wind import RECORD_COLUMNS, SPECTRA
@@ -43,6 +44,8 @@ class WindRecord:
     ParameterError
         If there are fewer than two samples, the time does not ascend, or a speed is negative.
     """
+
+    __repr__ = readable.summary
 
     time: Floats
     speed: Floats

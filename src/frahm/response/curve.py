@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frahm import __version__
+from frahm import __version__, readable
 from frahm.arrays import Floats, labelled
 
 if TYPE_CHECKING:
@@ -65,6 +65,8 @@ class Branch:
         Whether the motion lacks the symmetry x(t + T/2) = -x(t) of the equations; its mirror image is another response.
     """
 
+    __repr__ = readable.summary
+
     number: int
     detached: bool
     asymmetric: bool
@@ -111,6 +113,8 @@ class ResponseCurve:
     wind_speed : ndarray, optional
         U [m/s] at every point where the response is over the wind.
     """
+
+    __repr__ = readable.summary
 
     frequency: Floats
     detuning: Floats

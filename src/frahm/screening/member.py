@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+from frahm import readable
 from frahm.analysis import plain
 from frahm.case import Case, Tube
 from frahm.screening.judging import Findings, criterion_row
@@ -31,6 +32,8 @@ class ScreenedMember:
     assumed : dict of str to str
         What the table does not say, and what was taken.
     """
+
+    __repr__ = readable.summary
 
     name: str
     place: str

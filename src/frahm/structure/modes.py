@@ -12,6 +12,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike
 
+from frahm import readable
 from frahm.arrays import Floats, finite_array, frozen, labelled
 from frahm.errors import ParameterError, check_count
 from frahm.structure.beam import Beam
@@ -40,6 +41,8 @@ class BeamModes:
     coefficients : ndarray, shape (segments, degree + 1, n)
         Shapes as Legendre series between the nodes of the beam.
     """
+
+    __repr__ = readable.summary
 
     beam: Beam
     frequencies: Floats

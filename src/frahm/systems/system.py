@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from frahm import readable
 from frahm.absorbers import Law
 from frahm.arrays import Floats, finite_array, frozen
 from frahm.errors import ParameterError, check_number
@@ -64,6 +65,8 @@ class System:
     ParameterError
         Naming the array, what was given and what is allowed.
     """
+
+    __repr__ = readable.summary
 
     mass: Floats
     damping: Floats

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from frahm import readable
 from frahm.arrays import Floats, finite_array, frozen, labelled
 from frahm.errors import ConvergenceError, Outcome, ParameterError, check_choice, check_count, check_number
 from frahm.systems import System, as_system, detuning_of, excitation_frequency
@@ -54,6 +55,8 @@ class TimeHistory:
     tolerance : float
         Local error per step relative to the size of the motion.
     """
+
+    __repr__ = readable.summary
 
     time: Floats
     x: Floats

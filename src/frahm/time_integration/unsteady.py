@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from frahm import readable
 from frahm.arrays import Floats, finite_array, frozen, labelled
 from frahm.case import Case, load_case
 from frahm.errors import ConvergenceError, Outcome, ParameterError, check_count, check_number
@@ -67,6 +68,8 @@ class UnsteadyResponse:
     tolerance : float
         Local error per step relative to the size of the motion.
     """
+
+    __repr__ = readable.summary
 
     case: Case
     record: WindRecord

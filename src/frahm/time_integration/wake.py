@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm import readable
 from frahm.arrays import Floats, frozen, labelled
 from frahm.case import Case, Pipe, load_case
 from frahm.errors import ConvergenceError, Outcome, ParameterError, check_count, check_number
@@ -97,6 +98,8 @@ class WakeResponse:
     tolerance : float
         Local error per step relative to the size of the motion.
     """
+
+    __repr__ = readable.summary
 
     case: Case
     wake: WakeOscillator
