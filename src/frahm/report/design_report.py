@@ -12,7 +12,6 @@ from frahm.analysis import FORCE_MARGIN, defaulted_fields, provenance
 from frahm.analysis.decision import together
 from frahm.case import Case, Design, field_table, field_values
 from frahm.design import FAR, DesignStudy, Objective, Rival, design_summary
-from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.loads import lock_in_band, resonant_shedding, vortex_shedding
 from frahm.plotting.decision import DEVICES, Marks
@@ -23,7 +22,7 @@ from frahm.report.environment import template
 from frahm.report.input_tables import input_rows
 from frahm.report.numbers import number
 from frahm.report.references import reference_rows
-from frahm.report.report import REPORT_FILE, image_address
+from frahm.report.report import REPORT_FILE, figures_folder, image_address
 from frahm.response import frequency_response
 
 
@@ -35,11 +34,7 @@ def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
     ParameterError
         If a file cannot be written.
     """
-    figures, path = Path(folder) / "figures", Path(folder) / REPORT_FILE
-    try:
-        figures.mkdir(exist_ok=True)
-    except OSError as error:
-        raise ParameterError("DIR", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
+    figures, path = figures_folder(folder), Path(folder) / REPORT_FILE
     curve = frequency_response(study.best_case).to_dataset()
     lasting = together(study.lasting) if study.lasting else None
     drawn = save_design_figures(study.to_dataset(), figures, curve, lasting, _marks(study.case))

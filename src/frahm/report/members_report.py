@@ -9,14 +9,13 @@ from typing import Any
 
 from markupsafe import Markup
 
-from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.loads import amplitude_estimates, lock_in_band
 from frahm.plotting.members import save_member_figures
 from frahm.report.environment import kept_together, template, with_indices
 from frahm.report.numbers import number
 from frahm.report.references import Reference, reference_rows
-from frahm.report.report import REPORT_FILE, image_address
+from frahm.report.report import REPORT_FILE, figures_folder, image_address
 from frahm.screening import FAIL, LOOK_CLOSER, NOT_JUDGED, PASS, MemberScreen, share
 
 Row = Mapping[str, Any]
@@ -43,11 +42,7 @@ def write_members_report(screen: MemberScreen, folder: str | Path) -> Path:
     ParameterError
         If a file cannot be written.
     """
-    figures, path = Path(folder) / "figures", Path(folder) / REPORT_FILE
-    try:
-        figures.mkdir(exist_ok=True)
-    except OSError as error:
-        raise ParameterError("DIR", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
+    figures, path = figures_folder(folder), Path(folder) / REPORT_FILE
     drawn = save_member_figures(screen.results()["members"], figures)
     images = {file.stem: image_address(file.read_text(encoding="utf-8")) for file in drawn if file.suffix == ".svg"}
     write_text(path, render_members_report(screen, images))

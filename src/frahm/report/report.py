@@ -52,15 +52,27 @@ def write_report(analysis: Analysis, folder: str | Path) -> Path:
     ParameterError
         If a file cannot be written.
     """
-    figures, path = Path(folder) / "figures", Path(folder) / REPORT_FILE
-    try:
-        figures.mkdir(exist_ok=True)
-    except OSError as error:
-        raise ParameterError("DIR", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
+    figures, path = figures_folder(folder), Path(folder) / REPORT_FILE
     drawn = save_figures(analysis.results, analysis.data, figures)
     images = {file.stem: file.read_text(encoding="utf-8") for file in drawn if file.suffix == ".svg"}
     write_text(path, render_report(analysis, images))
     return path
+
+
+def figures_folder(folder: str | Path) -> Path:
+    """The folder of the figures beside a report, made if it is not there.
+
+    Raises
+    ------
+    ParameterError
+        If it cannot be made.
+    """
+    figures = Path(folder) / "figures"
+    try:
+        figures.mkdir(exist_ok=True)
+    except OSError as error:
+        raise ParameterError("DIR", str(folder), "a folder that can be written", hint=f"{error.strerror}.") from None
+    return figures
 
 
 def render_report(analysis: Analysis, images: dict[str, str]) -> str:
