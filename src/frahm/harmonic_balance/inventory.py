@@ -9,6 +9,11 @@ from frahm.harmonic_balance.search import Search, Track
 
 _SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
 
+_NOT_SEARCHED = (
+    "Not searched: responses whose period is a multiple of the excitation's (period doublings are located, the doubled"
+    " motions not followed), and responses without any first-harmonic counterpart."
+)
+
 NONE_FOUND = "No periodic response was found: Newton's method failed from every seed."
 _NEAR = 0.01  # of a frequency: how far from it a detached curve may be and still reach there
 
@@ -29,10 +34,16 @@ def inventory_text(search: Search) -> str:
         start = _SPREAD
         if search.problem.odd and not seeder.buckled:
             start += ", about the mean 0 only"
+    return f"Branches were followed from {start}. {_NOT_SEARCHED}"
+
+
+def continued_text() -> str:
+    """What is known where responses were continued from all solutions of one harmonic at one frequency."""
     return (
-        f"Branches were followed from {start}. Not searched: responses whose period is a multiple of the excitation's"
-        " (period doublings are located, the doubled motions not followed), and responses without any first-harmonic"
-        " counterpart."
+        "All solutions of the equations of one harmonic at this frequency were continued to exact responses, those and"
+        " the extremes of the force that just miss it were followed over the force, asymmetric responses from where"
+        " the symmetry is lost there. The fixed-point indices of all responses add up as they must, and those of the"
+        f" symmetric ones, too. {_NOT_SEARCHED}"
     )
 
 

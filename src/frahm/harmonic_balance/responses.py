@@ -12,14 +12,16 @@ from frahm import readable
 from frahm.arrays import Complexes, Floats, frozen
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
+from frahm.harmonic_balance.continued import continued
 from frahm.harmonic_balance.events import unstable_count
 from frahm.harmonic_balance.floquet import monodromy
 from frahm.harmonic_balance.following import lies_in_step, point_at
 from frahm.harmonic_balance.found import Found
-from frahm.harmonic_balance.indices import missing
+from frahm.harmonic_balance.indices import add_up, missing
 from frahm.harmonic_balance.inventory import (
     NONE_FOUND,
     all_known,
+    continued_text,
     inventory_text,
     not_proven,
     unfinished,
@@ -113,8 +115,13 @@ def periodic_responses_of(
     known = _of_one_harmonic(search, frequency)
     if known is not None:
         return known
+    continued_ones, complete = _continued(search, frequency)
+    if complete:
+        return Found(continued_ones, continued_text(), tuple(search.unsearched))
     tracks = find_branches(search, at=frequency)
     found = responses_on(search, tracks, frequency)
+    found += [response for response in continued_ones if not any(_same(response, other) for other in found)]
+    found.sort(key=lambda response: response.relative_amplitude)
     doubts = (
         *search.unsearched, *search.budget.sentences(), *not_proven(search, frequency), *unfinished(tracks),
         *(_missing(search, found) if found else (NONE_FOUND,)), *(unstable_unproven(search) if every else ()),
@@ -135,6 +142,28 @@ def _of_one_harmonic(search: Search, frequency: float) -> Found[PeriodicResponse
     return Found(found, "All solutions of the equations of one harmonic at this frequency.", tuple(search.unsearched))
 
 
+def _continued(search: Search, frequency: float) -> tuple[list[PeriodicResponse], bool]:
+    """Responses continued from all solutions of one harmonic, and whether their indices say that none is missing."""
+    found: list[PeriodicResponse] = []
+    solutions = continued(search, frequency)
+    if solutions is None:
+        return found, False
+    maps = []  # over half a period, of the symmetric ones
+    for odd, X, H in [(odd, *one) for odd, part in zip((True, False), solutions, strict=True) for one in part]:
+        solution = _solved(search, odd, frequency, X, H)
+        if solution is None:
+            return found, False
+        values = _map_multipliers(search, odd, *solution, frequency)
+        _add_response(search, found, odd, *solution, frequency, values)
+        maps += [values] if odd else []
+    if not found or any(response.residual > _EXACT for response in found):
+        return found, False
+    largest = max(response.relative_peak for response in found)
+    both = (maps, [response.multipliers for response in found])
+    found.sort(key=lambda response: response.relative_amplitude)
+    return found, all(add_up(search.system, values, largest) for values in both)
+
+
 def _missing(search: Search, found: Sequence[PeriodicResponse]) -> tuple[str, ...]:
     """A sentence if the responses found cannot be all; of those of a fixed number of harmonics nothing is known."""
     if search.harmonics is not None or any(response.residual > _EXACT for response in found):
@@ -148,14 +177,25 @@ def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> l
     found: list[PeriodicResponse] = []
     for track in tracks:
         for X, H in _crossings(search, track, frequency):
-            response = _response(search, track.odd, X, H, frequency)
-            if not any(_same(response, other) for other in found):
-                found.append(response)
-            if not track.odd and search.problem.odd:
-                mirrored = _response(search, False, _mirrored(search, X, H), H, frequency)
-                if not any(_same(mirrored, other) for other in found):
-                    found.append(mirrored)
+            _add_response(search, found, track.odd, X, H, frequency)
     return sorted(found, key=lambda response: response.relative_amplitude)
+
+
+def _add_response(
+    search: Search,
+    found: list[PeriodicResponse],
+    odd: bool,
+    X: Floats,
+    H: int,
+    frequency: float,
+    of_map: Complexes | None = None,
+) -> None:
+    """Add a response that is new, and its mirror image if it is not symmetric."""
+    solutions = [X] if odd or not search.problem.odd else [X, _mirrored(search, X, H)]
+    for solution in solutions:
+        response = _response(search, odd, solution, H, frequency, of_map)
+        if not any(_same(response, other) for other in found):
+            found.append(response)
 
 
 def _crossings(search: Search, track: Track, W: float) -> list[tuple[Floats, int]]:
@@ -194,19 +234,33 @@ def _mirrored(search: Search, X: Floats, H: int) -> Floats:
     return other
 
 
-def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> PeriodicResponse:
+def _map_multipliers(search: Search, odd: bool, X: Floats, H: int, W: float) -> Complexes:
+    """Multipliers of the map over half a period to the opposite state (odd harmonics), or over a period."""
+    n = search.system.size
+    Phi = np.empty((2 * n, 2 * n))
+    followed = monodromy(search.problem, variation_of(search.system), H, odd, W, _harmonics(search, odd, X, H), Phi)
+    if np.all(np.isfinite(Phi)):
+        return np.linalg.eigvals(-Phi if odd else Phi).astype(complex)
+    # a disturbance grows beyond all numbers, or the period is too long to follow: no multiplier is known
+    return np.full(2 * n, np.inf if followed else np.nan, complex)
+
+
+def _harmonics(search: Search, odd: bool, X: Floats, H: int) -> Complexes:
+    u = np.empty((H + 5, search.problem.M11.shape[0]), complex)
+    harmonics_of(search.problem, H, odd, X, u)
+    return u
+
+
+def _response(
+    search: Search, odd: bool, X: Floats, H: int, W: float, of_map: Complexes | None = None
+) -> PeriodicResponse:
+    """The response with the unknowns X; `of_map` are its `_map_multipliers` if they are known."""
     pb, n = search.problem, search.system.size
-    u = np.empty((H + 5, pb.M11.shape[0]), complex)
-    harmonics_of(pb, H, odd, X, u)
+    u = _harmonics(search, odd, X, H)
     ks = range(1, H + 1, 2) if odd else range(H + 1)
     rows = {k: np.array([output_harmonic(pb, k, W, u[k], row) for row in range(2 + n)]) for k in ks}
-    Phi = np.empty((2 * n, 2 * n))
-    followed = monodromy(pb, variation_of(search.system), H, odd, W, u, Phi)
-    if np.all(np.isfinite(Phi)):
-        values = np.linalg.eigvals(Phi).astype(complex)
-        multipliers = values**2 if odd else values
-    else:  # a disturbance grows beyond all numbers, or the period is too long to follow: no multiplier is known
-        multipliers = np.full(2 * n, np.inf if followed else np.nan, complex)
+    values = _map_multipliers(search, odd, X, H, W) if of_map is None else of_map
+    multipliers = values**2 if odd and np.all(np.isfinite(values)) else values
     multipliers = multipliers[np.argsort(-np.abs(multipliers))]
     peaks = []
     for row in range(2):
