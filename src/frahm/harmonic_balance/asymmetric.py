@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-import scipy.linalg
 
 from frahm.arrays import Floats
+from frahm.continuation.dense import factorise, solve_factorised
 from frahm.harmonic_balance.completing import complete, described
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import LocatedEvent, Point
@@ -162,10 +162,12 @@ def _asymmetric_start(search: Search, y: Floats, _: Floats, H: int) -> tuple[Flo
 
 def _null_vector(J: Floats) -> Floats:
     """Unit vector that a nearly singular matrix maps to nearly nothing, by inverse iteration."""
-    factors = scipy.linalg.lu_factor(J + _TILT * np.linalg.norm(J) * np.eye(len(J)), check_finite=False)
+    factors, pivots = J + _TILT * np.linalg.norm(J) * np.eye(len(J)), np.empty(len(J), np.int64)
+    factorise(factors, pivots, len(J))
     null = np.random.default_rng(1).standard_normal(len(J))
     for _ in range(3):
-        null = scipy.linalg.lu_solve(factors, null / np.linalg.norm(null), check_finite=False)
+        null /= np.linalg.norm(null)
+        solve_factorised(factors, pivots, len(J), null)
     return np.asarray(null / np.linalg.norm(null))
 
 

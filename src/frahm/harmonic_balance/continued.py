@@ -18,7 +18,7 @@ from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian
 from frahm.harmonic_balance.over_force import even_block, follow_over_force
 from frahm.harmonic_balance.search import Search
 from frahm.harmonic_balance.seeds import Seed
-from frahm.harmonic_balance.shared_drive import Solutions, solutions_at
+from frahm.harmonic_balance.shared_drive import Solutions
 from frahm.harmonic_balance.starts import solve_seed
 
 _SAME = 1e-6  # relative distance of two solutions that are one
@@ -100,7 +100,7 @@ def continued(search: Search, W: float) -> tuple[list[Solution], list[Solution]]
     """
     if search.seeder.shared is None or search.seeder.buckled or search.harmonics is not None:
         return None
-    known = solutions_at(search.problem, W, search.seeder.shared)
+    known = search.seeder.solutions(W)
     if not known.complete:
         return None
     found = _Continued(search, W, float(np.max(np.abs(known.harmonics))))
