@@ -14,15 +14,15 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.continuation import ContinuationSettings, CurvePoint, between_points, follow_curve, newton
 from frahm.errors import Outcome
+from frahm.harmonic_balance.branch import Bifurcation, Branch, Point, located
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import condense, unknowns
 from frahm.harmonic_balance.equations import FREQUENCY, Equations
-from frahm.harmonic_balance.events import LocatedEvent
 from frahm.harmonic_balance.floquet import map_multipliers
 from frahm.harmonic_balance.fold_equations import FoldEquations
 from frahm.harmonic_balance.kernels import harmonics_of
 from frahm.harmonic_balance.orbits import output_series, peak_of
-from frahm.harmonic_balance.search import Search, Track, begin
+from frahm.harmonic_balance.search import Search, search_over
 from frahm.harmonic_balance.torus_equations import TorusEquations
 from frahm.systems import System, parameter_value, with_parameters
 
@@ -71,12 +71,12 @@ class Locus:
 
 @dataclass(frozen=True)
 class _Start:
-    """A located special point: its slice, its orbit and the tracks' scales."""
+    """A located special point: its slice, its orbit and the branches' scales."""
 
     search: Search
-    track: Track
-    event: LocatedEvent
-    point: tuple[Floats, Floats, int]
+    branch: Branch
+    event: Bifurcation
+    point: Point
     slice_value: float
 
 
@@ -102,7 +102,7 @@ def loci_with_frequency(
     for value in _slice_values(system, parameter, bounds, slices):
         for start in _starts(system, kind, parameter, window, value, asymmetric, doubts):
             frequency, peak = float(start.event.columns[0]), float(start.event.columns[4])
-            alike = [locus for locus in loci if locus.symmetric == start.track.odd]
+            alike = [locus for locus in loci if locus.symmetric == start.branch.odd]
             if any(_lies_on(locus, frequency, value, peak, window) for locus in alike):
                 continue
             found = _follow(system, start, kind, (FREQUENCY, parameter), (window, bounds), frequency)
@@ -152,14 +152,13 @@ def _starts(
     system: System, kind: str, parameter: str, window: tuple[float, float], value: float, asymmetric: bool,
     doubts: list[str],
 ) -> list[_Start]:  # fmt: skip
-    search = begin(with_parameters(system, **{parameter: float(value)}), *window, None)
+    search = search_over(with_parameters(system, **{parameter: float(value)}), *window, None)
     starts = []
-    tracks = find_branches(search, asymmetric)
+    branches = find_branches(search, asymmetric)
     doubts += [f"At {parameter} {value:.6g}: {sentence}" for sentence in search.budget.sentences()]
-    for track in tracks:
-        for event, point in zip(track.events, track.event_points, strict=True):
-            if event.kind == kind and point is not None:
-                starts.append(_Start(search, track, event, point, float(value)))
+    for branch in branches:
+        for event, point in located(branch.bifurcations, kind):
+            starts.append(_Start(search, branch, event, point, float(value)))
     return starts
 
 
@@ -172,8 +171,8 @@ def _follow(
     frequency: float,
 ) -> tuple[Locus, tuple[Equations, list[CurvePoint]]] | None:
     """Follow a curve from a located point in both directions, with more harmonics if it needs them."""
-    pb, odd = start.search.problem, start.track.odd
-    y, _, H0 = start.point
+    pb, odd = start.search.problem, start.branch.odd
+    y, H0 = start.point.y, start.point.H
     n0 = unknowns(pb, H0, odd)
     scales = tuple(hi - lo for lo, hi in bounds)
     given = [y[n0], start.slice_value]
@@ -243,8 +242,8 @@ def _before_mirror(equations: Equations, points: list[CurvePoint]) -> list[Curve
 
 def _angular_rate(start: _Start) -> float:
     """Imaginary part nu [rad/s] of the critical exponent at a Neimark-Sacker point."""
-    pb, odd = start.search.problem, start.track.odd
-    y, _, H = start.point
+    pb, odd = start.search.problem, start.branch.odd
+    y, H = start.point.y, start.point.H
     W = y[unknowns(pb, H, odd)]
     u = np.empty((H + 5, pb.M11.shape[0]), complex)
     harmonics_of(pb, H, odd, y, u)

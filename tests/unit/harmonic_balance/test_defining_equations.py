@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.harmonic_balance import begin, find_branches
+from frahm.harmonic_balance import find_branches, search_over
 from frahm.harmonic_balance.condensation import CondensedChange, coordinates, linear_part, unknowns
 from frahm.harmonic_balance.detached import _second_derivatives
 from frahm.harmonic_balance.fold_equations import FoldEquations
@@ -38,16 +38,16 @@ def found(request):
     if request.param == "sliding":
         system = sliding_pipe()
     omega = system.reference_frequency
-    search = begin(system, omega - 0.2, omega + 0.2, None)
+    search = search_over(system, omega - 0.2, omega + 0.2, None)
     return system, search, find_branches(search)
 
 
 def first_point(found, kind):
-    _, search, tracks = found
-    for track in tracks:
-        for event, point in zip(track.events, track.event_points, strict=True):
+    _, search, branches = found
+    for branch in branches:
+        for event in branch.bifurcations:
             if event.kind == kind:
-                return search, track, point
+                return search, branch, event.point
     raise AssertionError(kind)
 
 
@@ -68,10 +68,11 @@ def differences(function, y, h=1e-6):
 @pytest.mark.parametrize("axes", AXES)
 def test_saddle_node_equations(found, axes):
     system = found[0]
-    search, track, (y, _, H) = first_point(found, "saddle-node")
-    n = unknowns(search.problem, H, track.odd)
+    search, branch, point = first_point(found, "saddle-node")
+    y, H = point.y, point.H
+    n = unknowns(search.problem, H, branch.odd)
     values = values_of(system, axes, y[n])
-    equations = FoldEquations(system, axes, y[n], H, track.odd, search.x_scale, tuple(values))
+    equations = FoldEquations(system, axes, y[n], H, branch.odd, search.x_scale, tuple(values))
     at = np.append(y[:n] / search.x_scale, [1.0, 1.0])
     R, J = equations.residual(at)
     assert np.max(np.abs(R)) < 1e-8
@@ -89,11 +90,12 @@ def test_saddle_node_equations(found, axes):
 @pytest.mark.parametrize("axes", AXES)
 def test_neimark_sacker_equations(found, axes):
     system = found[0]
-    search, track, (y, _, H) = first_point(found, "neimark-sacker")
-    n = unknowns(search.problem, H, track.odd)
+    search, branch, point = first_point(found, "neimark-sacker")
+    y, H = point.y, point.H
+    n = unknowns(search.problem, H, branch.odd)
     values = values_of(system, axes, y[n])
     y0 = y[n]
-    equations = TorusEquations(system, axes, y[n], H, track.odd, search.x_scale, tuple(values))
+    equations = TorusEquations(system, axes, y[n], H, branch.odd, search.x_scale, tuple(values))
     at = np.append(y[:n] / search.x_scale, [1.0, 1.0, 0.3749 / y[n]])
     _, J = equations.residual(at)
     A, _ = equations._hill(equations.orbit(at), at[-1] * y0)
