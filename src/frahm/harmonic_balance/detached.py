@@ -60,7 +60,7 @@ def detached_events(
             cusp = a.tangent[at - 1] * b.tangent[at - 1] < 0  # both axes turn back: two saddle-nodes meet on one curve
             if a.tangent[at] * b.tangent[at] >= 0 or a.tangent @ b.tangent < 0 or cusp:
                 continue
-            point = between_points(equations.residual, a, b, lambda p, at=at: float(p.tangent[at]), _LOCATED)  # type: ignore[misc, attr-defined]
+            point = between_points(equations.residual, a, b, lambda p, at=at: float(p.tangent[at]), _LOCATED)  # type: ignore[misc]
             if point is None:
                 continue
             event = _event(equations, point, parameter, 1 if a.tangent[at] < 0 else -1)

@@ -10,6 +10,7 @@ Minimally extended (bordered) systems: Govaerts (2000), doi 10.1137/1.9780898719
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -84,10 +85,11 @@ def _matrix_of_slopes(pb, H, odd, W, slopes, by_velocity, J):
 
 
 @dataclass
-class Equations:
+class Equations(ABC):
     """What both kinds of points share: residual and Jacobian of the orbit in (X, q1, q2).
 
-    Unknowns are scaled: X by `x_scale`, the axes by `scales`. `frequency` is Omega [rad/s] where it is no axis.
+    Unknowns are scaled: X by `x_scale`, the axes by `scales`. `frequency` is Omega [rad/s] where it is no axis. `start`
+    is a scaled point near the curve, from which the bordering vectors are: they stay, so that g has one sign.
     """
 
     system: System
@@ -97,6 +99,7 @@ class Equations:
     odd: bool
     x_scale: float
     scales: tuple[float, float]
+    start: Floats
     problem: Problem = field(init=False)
     tables: tuple[Floats, Floats] = field(init=False)
     T: Floats = field(init=False)
@@ -105,6 +108,10 @@ class Equations:
         self.problem = condense(self.system)
         self.T = coordinates(self.system)[0]
         self.tables = fourier_tables(self.H, self.odd, sample_count(self.problem, self.H, self.odd))
+
+    @abstractmethod
+    def residual(self, y: Floats) -> tuple[Floats, Floats]:
+        """Residual and Jacobian in scaled unknowns; NaN where an axis is not positive and there is no system."""
 
     @property
     def n(self) -> int:
@@ -278,6 +285,11 @@ class Orbit:
         if not eq.odd:
             out[1 : 2 * pb.M11.shape[0] : 2] = 0.0
         return out
+
+
+def row_weights(A: Floats | Complexes) -> Floats:
+    """Factors that make the largest entry of every row 1 in size."""
+    return np.asarray(1.0 / np.max(np.abs(A), axis=1), dtype=float)
 
 
 def of_first(samples: Floats, like: Floats) -> Floats:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -173,20 +174,16 @@ def _follow(
     """Follow a curve from a located point in both directions, with more harmonics if it needs them."""
     pb, odd = start.search.problem, start.branch.odd
     y, H0 = start.point.y, start.point.H
-    n0 = unknowns(pb, H0, odd)
-    scales = tuple(hi - lo for lo, hi in bounds)
-    given = [y[n0], start.slice_value]
-    H = H0 + 4
+    n0, H = unknowns(pb, H0, odd), H0 + 4
+    scales = bounds[0][1] - bounds[0][0], bounds[1][1] - bounds[1][0]
     while True:
-        cls = FoldEquations if kind == "saddle-node" else TorusEquations
-        equations = cls(system, axes, frequency, H, odd, start.search.x_scale, scales)  # type: ignore[arg-type]
-        first = np.zeros(equations.n + (2 if kind == "saddle-node" else 3))
+        first = np.append(np.zeros(unknowns(pb, H, odd)), [y[n0], start.slice_value] / np.array(scales))
         first[:n0] = y[:n0] / start.search.x_scale
-        first[equations.n : equations.n + 2] = [given[0] / scales[0], given[1] / scales[1]]
         if kind != "saddle-node":
-            first[-1] = _angular_rate(start) / frequency
-        found = _both_ways(equations, first, bounds)
-        if found is None:
+            first = np.append(first, _angular_rate(start) / frequency)
+        equations = _equations(kind, system, axes, frequency, H, odd, start.search.x_scale, scales, first)
+        found = None if equations is None else _both_ways(equations, bounds)
+        if equations is None or found is None:
             return None
         points, outcomes = found
         worst = max(equations.orbit(p.y).truncation for p in points[:: max(1, len(points) // 12)])
@@ -195,10 +192,19 @@ def _follow(
         H += 8
 
 
+def _equations(kind: str, *given: Any) -> Equations | None:
+    """Defining equations of a kind of points; None where the matrix at their start cannot be decomposed."""
+    try:
+        return FoldEquations(*given) if kind == "saddle-node" else TorusEquations(*given)
+    except np.linalg.LinAlgError:
+        return None
+
+
 def _both_ways(
-    equations: Equations, first: Floats, bounds: tuple[tuple[float, float], tuple[float, float]]
+    equations: Equations, bounds: tuple[tuple[float, float], tuple[float, float]]
 ) -> tuple[list[CurvePoint], tuple[Outcome, ...]] | None:
-    n = equations.n
+    """Follow the curve from the start of its equations in both directions."""
+    n, first = equations.n, equations.start
 
     def inside(y: Floats) -> bool:
         values = equations.axis_values(y)
@@ -206,16 +212,16 @@ def _both_ways(
 
     guide = np.zeros(first.size)
     guide[n + 1] = 1.0
-    settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)  # type: ignore[attr-defined]
+    settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)
     if settled is None:
         guide[n], guide[n + 1] = 1.0, 0.0
-        settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)  # type: ignore[attr-defined]
+        settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)
     if settled is None:
         return None
     parts, outcomes = [], []
     for sign in (1.0, -1.0):
         part: list[CurvePoint] = []
-        for item in follow_curve(equations.residual, settled.y, sign * settled.tangent, inside, _SETTINGS):  # type: ignore[attr-defined]
+        for item in follow_curve(equations.residual, settled.y, sign * settled.tangent, inside, _SETTINGS):
             if isinstance(item, Outcome):
                 outcomes.append(item)
             else:
@@ -317,7 +323,7 @@ def _at_frequency(equations: Equations, points: list[CurvePoint], frequency: flo
     found = []
     for a, b in itertools.pairwise(points):
         if (a.y[equations.n] - scaled) * (b.y[equations.n] - scaled) <= 0:
-            point = between_points(equations.residual, a, b, lambda p: float(p.y[equations.n] - scaled), _AT)  # type: ignore[attr-defined]
+            point = between_points(equations.residual, a, b, lambda p: float(p.y[equations.n] - scaled), _AT)
             if point is not None:
                 found.append(point)
     return found
@@ -334,16 +340,15 @@ def _from_point(
     value: float,
 ) -> Locus | None:
     """Follow a curve in a plane without the frequency from a point of a curve in a plane with it."""
-    cls = FoldEquations if kind == "saddle-node" else TorusEquations
-    scales = tuple(hi - lo for lo, hi in bounds)
-    equations = cls(system, plane, frequency, given.H, given.odd, given.x_scale, scales)  # type: ignore[arg-type]
+    scales = bounds[0][1] - bounds[0][0], bounds[1][1] - bounds[1][0]
     first = point.y.copy()
     first[given.n] = given.axis_values(point.y)[1] / scales[0]
     first[given.n + 1] = value / scales[1]
     if kind != "saddle-node":
         first[-1] = point.y[-1] * given.frequency / frequency
-    found = _both_ways(equations, first, bounds)
-    return None if found is None else _locus(equations, found[0], kind, found[1])
+    equations = _equations(kind, system, plane, frequency, given.H, given.odd, given.x_scale, scales, first)
+    found = None if equations is None else _both_ways(equations, bounds)
+    return None if equations is None or found is None else _locus(equations, found[0], kind, found[1])
 
 
 def _same_curve(a: Locus, b: Locus, bounds: tuple[tuple[float, float], tuple[float, float]]) -> bool:

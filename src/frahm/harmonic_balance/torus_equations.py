@@ -6,13 +6,13 @@ The Hill matrix is singular at the exponent i nu, written as one complex scalar.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from frahm.arrays import Complexes, Floats
-from frahm.harmonic_balance.equations import Change, Equations, Orbit, of_first, stiffness_and_slope
+from frahm.harmonic_balance.equations import Change, Equations, Orbit, of_first, row_weights, stiffness_and_slope
 
 
 @dataclass
@@ -22,7 +22,13 @@ class TorusEquations(Equations):
     The disturbance e^{i nu t} sum_k v_k e^{ik Omega t} uses the harmonics -H ... H of the orbit's parity.
     """
 
-    border: tuple[Complexes, Complexes] | None = None
+    border: tuple[Complexes, Complexes] = field(init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        A, _ = self._hill(self.orbit(self.start), float(self.start[self.n + 2] * self.frequency))
+        left, _, right = np.linalg.svd(row_weights(A)[:, None] * A)
+        self.border = left[:, -1], right[-1].conj()
 
     @property
     def waves(self) -> np.ndarray:
@@ -37,10 +43,7 @@ class TorusEquations(Equations):
         orbit = self.orbit(y)
         nu = float(y[n + 2] * self.frequency)
         A, parts = self._hill(orbit, nu)
-        weight = 1.0 / np.max(np.abs(A), axis=1)
-        if self.border is None:
-            left, _, right = np.linalg.svd(weight[:, None] * A)
-            self.border = left[:, -1], right[-1].conj()
+        weight: Any = row_weights(A)
         b, c = self.border
         M = np.block([[weight[:, None] * A, b[:, None]], [c.conj()[None], np.zeros((1, 1))]])
         unit = np.zeros(len(A) + 1)
