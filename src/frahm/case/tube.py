@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from frahm.case.quantities import Choice, Count, Quantities, Quantity, refusal
-from frahm.case.section import Section
+from frahm.case.quantities import Choice, Count, Quantity, QuantityList, refusal
+from frahm.case.section import CaseSection
 from frahm.errors import ParameterError
 from frahm.structure import Beam, BeamModes, ModalPipe, PointMass, Support, beam_modes, modal_pipe
 from frahm.structure.modes import MOST_MODES
@@ -18,7 +18,7 @@ SUPPORTS = ("pinned", "clamped", "free", "spring")
 LIFTS = ("uniform", "mode-shape")
 
 
-class TubeSupport(Section):
+class TubeSupport(CaseSection):
     """What holds the tube at one section."""
 
     at: Annotated[float, Quantity("m", "s", at_least=0)] = Field(
@@ -44,7 +44,7 @@ class TubeSupport(Section):
         return translation, math.inf if self.kind == "clamped" else self.rotation
 
 
-class TubePointMass(Section):
+class TubePointMass(CaseSection):
     """A mass at one section of the tube."""
 
     at: Annotated[float, Quantity("m", "s", at_least=0)] = Field(
@@ -55,7 +55,7 @@ class TubePointMass(Section):
     )
 
 
-class Tube(Section):
+class Tube(CaseSection):
     """The pipe as an elastic tube: bending vibration in its exact modes."""
 
     kind: Literal["tube"] = Field(title="Kind of pipe", description="An elastic tube on supports.")
@@ -99,7 +99,7 @@ class Tube(Section):
     damping_ratio: Annotated[float, Quantity("", "zeta", at_least=0, below=1)] = Field(
         title="Damping ratio", description="Fraction of critical damping of every mode, or of the governing one."
     )
-    damping_ratios: Annotated[tuple[float, ...], Quantities("", "zeta", at_least=0, below=1, shortest=0)] = Field(
+    damping_ratios: Annotated[tuple[float, ...], QuantityList("", "zeta", at_least=0, below=1, shortest=0)] = Field(
         default=(), title="Damping ratios of all modes", description="One for each mode, in place of the same for all."
     )
     lift: Annotated[Literal["uniform", "mode-shape"], Choice(LIFTS)] = Field(

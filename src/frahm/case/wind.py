@@ -9,7 +9,7 @@ from pydantic import Field
 
 from frahm.case.quantities import Choice, Door, Quantity, Range, refusal
 from frahm.case.reynolds import LIFT, LIFT_CURVES, STROUHAL, STROUHAL_CURVES, Coefficient, reynolds_range
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 from frahm.case.table_files import Column, table_rows
 
 SPECTRA = ("kaimal", "en1991", "von-karman")
@@ -17,7 +17,7 @@ RECORD_COLUMNS = (Column("time", "s"), Column("speed", "m/s"))
 _MOST_SAMPLES = 5000  # the samples become part of the case, which must stay a file that can be read
 
 
-class Turbulence(Section):
+class Turbulence(CaseSection):
     """Synthetic gusts around the wind speed."""
 
     intensity: Annotated[float, Quantity("", "I_u", at_least=0, at_most=1)] = Field(
@@ -76,7 +76,7 @@ class Record(Door):
         return {"anyOf": [{"type": "array", "items": pair, "maxItems": _MOST_SAMPLES}, {"type": "string"}]}
 
 
-class Wind(Section):
+class Wind(CaseSection):
     """The wind that sheds vortices from the pipe."""
 
     speed: Annotated[float, Quantity("m/s", "U", above=0)] = Field(

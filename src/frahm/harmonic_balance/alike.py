@@ -12,7 +12,7 @@ import numpy as np
 from frahm.absorbers import Law
 from frahm.absorbers.packed import pack_laws
 from frahm.arrays import Complexes, Floats
-from frahm.harmonic_balance.branch import Branch
+from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.following import far_from_folds
 from frahm.harmonic_balance.search import Search
@@ -35,12 +35,12 @@ def moving_alike(system: System) -> System | None:
     return System(M, C, K, P.T @ system.forcing, elements, P.T @ system.output, name=system.name)
 
 
-def seeds_alike(search: Search, alike: Search, branches: list[Branch]) -> list[Seed]:
+def seeds_alike(search: Search, alike: Search, branches: list[SolutionBranch]) -> list[Seed]:
     """Starts in the whole system from the branches of its motions alike, one of each."""
     return [_seed(search, alike, branch) for branch in branches]
 
 
-def _seed(search: Search, alike: Search, branch: Branch) -> Seed:
+def _seed(search: Search, alike: Search, branch: SolutionBranch) -> Seed:
     at = far_from_folds(alike, branch)
     point, r = branch.points[at], alike.problem.M11.shape[0]
     X = point.y[: unknowns(alike.problem, point.H, branch.odd)].reshape(-1, r, 2)

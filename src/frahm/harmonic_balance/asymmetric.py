@@ -8,7 +8,7 @@ import numpy as np
 import scipy.linalg
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance.branch import Bifurcation, Branch, Point, described, located, points_of
+from frahm.harmonic_balance.branch import Bifurcation, Point, SolutionBranch, described, located, points_of
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.following import followed, lies_on
 from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count
@@ -28,14 +28,14 @@ _TILT = 1e-14  # of a singular matrix, relative, so that it can be factorised
 _ALL_BUT_SYMMETRIC = 0.05  # even part at an end over that of its neighbour
 
 
-def asymmetric_branches(search: Search, parent: Branch, known: list[Branch]) -> list[Branch]:
+def asymmetric_branches(search: Search, parent: SolutionBranch, known: list[SolutionBranch]) -> list[SolutionBranch]:
     """Branches with even harmonics that leave an odd branch where it loses its symmetry.
 
     One of each mirrored pair is followed, between the points at which it meets odd branches.
     """
     if not parent.odd:
         return []
-    branches: list[Branch] = []
+    branches: list[SolutionBranch] = []
     for event, point in located([*parent.bifurcations, *parent.outside], "branch-point"):
         asymmetric = [branch for branch in known + branches if not branch.odd]
         ends = [branch.points.columns[i] for branch in asymmetric for i in (0, -1)]
@@ -52,7 +52,7 @@ def asymmetric_branches(search: Search, parent: Branch, known: list[Branch]) -> 
     return branches
 
 
-def _extend_to_branch_points(search: Search, branch: Branch, odd: list[Branch]) -> None:
+def _extend_to_branch_points(search: Search, branch: SolutionBranch, odd: list[SolutionBranch]) -> None:
     """Put the points at which the symmetry is lost on the ends of a branch that leaves there."""
     births = [birth for other in odd for birth in located(other.bifurcations, "branch-point")]
     places = [_scaled(search, _with_even(search, point)) for _, point in births]
@@ -63,7 +63,7 @@ def _extend_to_branch_points(search: Search, branch: Branch, odd: list[Branch]) 
             _put_at_end(search, branch, end, *births[int(np.argmin(away))])
 
 
-def _put_at_end(search: Search, branch: Branch, end: int, event: Bifurcation, birth: Point) -> None:
+def _put_at_end(search: Search, branch: SolutionBranch, end: int, event: Bifurcation, birth: Point) -> None:
     """Add a symmetric point to an end of an asymmetric branch, which leaves it along its even part."""
     tangent, n = np.zeros(search.size(False)), unknowns(search.problem, birth.H, False)
     even = branch.points.ys[end, :n].copy().reshape(-1, 2 * search.problem.M11.shape[0])
@@ -94,12 +94,12 @@ def _scaled(search: Search, point: Point) -> Floats:
     return y
 
 
-def buckled_branches(search: Search, seeds: list[Seed], known: list[Branch]) -> list[Branch]:
+def buckled_branches(search: Search, seeds: list[Seed], known: list[SolutionBranch]) -> list[SolutionBranch]:
     """Branches of an odd system about another mean than 0 that no loss of symmetry in the window has led to.
 
     One of each mirrored pair is followed.
     """
-    branches: list[Branch] = []
+    branches: list[SolutionBranch] = []
     for seed in seeds:
         start = None if search.budget.reached else solve_seed(search, seed, False)
         if start is None or np.linalg.norm(_even_part(search, *start)) < _SYMMETRIC * search.x_scale:
@@ -113,14 +113,14 @@ def buckled_branches(search: Search, seeds: list[Seed], known: list[Branch]) -> 
     return branches
 
 
-def _is_same(search: Search, branch: Branch, other: Branch) -> bool:
+def _is_same(search: Search, branch: SolutionBranch, other: SolutionBranch) -> bool:
     """Whether two asymmetric branches are one, or mirror images of one another, judged where the first is least odd."""
     points = branch.points
     i = int(np.argmax([np.linalg.norm(_even_part(search, y, H)) for y, H in zip(points.ys, points.Hs, strict=True)]))
     return lies_on_up_to_symmetry(search, other, points.ys[i], int(points.Hs[i]))
 
 
-def lies_on_up_to_symmetry(search: Search, other: Branch, y: Floats, H: int) -> bool:
+def lies_on_up_to_symmetry(search: Search, other: SolutionBranch, y: Floats, H: int) -> bool:
     """Whether a solution or its mirror image lies on an asymmetric branch."""
     pb, r = search.problem, search.problem.M11.shape[0]
     mirrored = y.copy()
@@ -166,7 +166,7 @@ def _even_part(search: Search, y: Floats, H: int) -> Floats:
     return y[:n].reshape(-1, 2 * r)[::2].ravel()
 
 
-def _half_of_pair(search: Search, branch: Branch) -> Branch:
+def _half_of_pair(search: Search, branch: SolutionBranch) -> SolutionBranch:
     """Cut an asymmetric branch where it passes through a symmetric orbit into its mirror image."""
     parts = [_even_part(search, y, H) for y, H in zip(branch.points.ys, branch.points.Hs, strict=True)]
     flips = [
@@ -188,4 +188,4 @@ def _half_of_pair(search: Search, branch: Branch) -> Branch:
         keep = keep[: -1 if sizes[keep[-1]] < _ALL_BUT_SYMMETRIC * sizes[keep[-2]] else None] if len(keep) > 2 else keep
     if len(keep) == len(parts):
         return branch
-    return Branch(False, branch.points.take(keep), False, branch.endings)
+    return SolutionBranch(False, branch.points.take(keep), False, branch.endings)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance.branch import Bifurcation, Branch, Point, described, point_between, points_of
+from frahm.harmonic_balance.branch import Bifurcation, Point, SolutionBranch, described, point_between, points_of
 from frahm.harmonic_balance.orbits import locate
 from frahm.harmonic_balance.search import Search
 
@@ -48,7 +48,7 @@ def unstable_count(multipliers: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(largest[..., 0]), np.sum(seen, axis=-1), 1)
 
 
-def steps_with_bifurcations(search: Search, branch: Branch) -> np.ndarray:
+def steps_with_bifurcations(search: Search, branch: SolutionBranch) -> np.ndarray:
     """For every step of a branch whether stability or direction changes in it."""
     rise, W = branch.points.rise(search.problem, branch.odd), branch.points.frequency
     unstable = unstable_count(branch.points.multipliers)
@@ -56,12 +56,12 @@ def steps_with_bifurcations(search: Search, branch: Branch) -> np.ndarray:
     return np.asarray(((rise[:-1] * rise[1:] < 0) | (unstable[:-1] != unstable[1:])) & ~gap)
 
 
-def bifurcations_in_step(search: Search, branch: Branch, i: int) -> list[Bifurcation]:
+def bifurcations_in_step(search: Search, branch: SolutionBranch, i: int) -> list[Bifurcation]:
     """Bifurcations between points i and i + 1 of a branch, in order along it."""
     return _between(search, branch.odd, *_ends(search, branch, i), 0)
 
 
-def unlocated_in_step(search: Search, branch: Branch, i: int) -> list[Bifurcation]:
+def unlocated_in_step(search: Search, branch: SolutionBranch, i: int) -> list[Bifurcation]:
     """What changes between points i and i + 1 of a branch, not located."""
     return [_unlocated(branch.odd, *_ends(search, branch, i))]
 
@@ -75,7 +75,7 @@ def _unlocated(odd: bool, a: _End, b: _End) -> Bifurcation:
     return Bifurcation(_kind(odd, folded, critical), 0.5 * (a.columns + b.columns), half, None)
 
 
-def _ends(search: Search, branch: Branch, i: int) -> tuple[_End, _End]:
+def _ends(search: Search, branch: SolutionBranch, i: int) -> tuple[_End, _End]:
     a, b = (_end(search, branch.odd, branch.points[k]) for k in (i, i + 1))
     return a, b
 

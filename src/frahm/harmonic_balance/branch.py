@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance.condensation import Problem, unknowns
+from frahm.harmonic_balance.condensation import CondensedSystem, unknowns
 from frahm.harmonic_balance.orbits import between, describe, same_harmonics
 from frahm.harmonic_balance.search import Search
 
@@ -24,13 +24,13 @@ class Point:
     t: Floats
     H: int
 
-    def with_harmonics(self, pb: Problem, odd: bool, H: int) -> Point:
+    def with_harmonics(self, pb: CondensedSystem, odd: bool, H: int) -> Point:
         """The point and its tangent with another number of harmonics."""
         y, t = np.zeros_like(self.y), np.zeros_like(self.t)
         same_harmonics(pb, odd, self.y, self.t, self.H, H, y, t)
         return Point(y, t, H)
 
-    def with_unknowns(self, pb: Problem, odd: bool, n: int) -> Floats:
+    def with_unknowns(self, pb: CondensedSystem, odd: bool, n: int) -> Floats:
         """X with n unknowns, cut off or filled with zeros, and Omega (n + 1,)."""
         own = unknowns(pb, self.H, odd)
         y = np.zeros(n + 1)
@@ -70,7 +70,7 @@ class Points:
         same = self.frequency[:-1] == self.frequency[1:]
         return np.concatenate([[0], np.cumsum(same)]).astype(int)
 
-    def rise(self, pb: Problem, odd: bool) -> Floats:
+    def rise(self, pb: CondensedSystem, odd: bool) -> Floats:
         """dOmega/ds at every point, in scaled unknowns; it changes its sign at a fold."""
         return np.asarray(self.ts[np.arange(len(self)), unknowns(pb, self.Hs, odd)])
 
@@ -136,7 +136,7 @@ class Bifurcation:
 
 
 @dataclass
-class Branch:
+class SolutionBranch:
     """One branch as it was followed, with the bifurcations on it and the branches it is connected to.
 
     outside are branch points beyond the window, from where an asymmetric branch may come into it; parent is the branch
@@ -149,8 +149,8 @@ class Branch:
     endings: tuple[int, ...]
     bifurcations: list[Bifurcation] = field(default_factory=list)
     outside: list[Bifurcation] = field(default_factory=list)
-    parent: Branch | None = None
-    crossed: list[Branch] = field(default_factory=list)
+    parent: SolutionBranch | None = None
+    crossed: list[SolutionBranch] = field(default_factory=list)
 
 
 def located(bifurcations: Iterable[Bifurcation], kind: str) -> list[tuple[Bifurcation, Point]]:
@@ -158,9 +158,9 @@ def located(bifurcations: Iterable[Bifurcation], kind: str) -> list[tuple[Bifurc
     return [(one, one.point) for one in bifurcations if one.kind == kind and one.point is not None]
 
 
-def connected(branches: list[Branch]) -> list[Branch]:
+def connected(branches: list[SolutionBranch]) -> list[SolutionBranch]:
     """Branches that hang together with the first one, directly or through others."""
-    found: list[Branch] = []
+    found: list[SolutionBranch] = []
     waiting = branches[:1]
     while waiting:
         branch = waiting.pop()

@@ -10,7 +10,7 @@ import numpy as np
 from frahm.harmonic_balance.alike import moving_alike, seeds_alike
 from frahm.harmonic_balance.asymmetric import asymmetric_branches, buckled_branches
 from frahm.harmonic_balance.births import seeds_beside
-from frahm.harmonic_balance.branch import Branch, Point, connected
+from frahm.harmonic_balance.branch import Point, SolutionBranch, connected
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.following import far_from_folds, followed, lies_on
 from frahm.harmonic_balance.search import Search, search_over
@@ -24,14 +24,14 @@ _STRONG_THIRD = 0.12  # third harmonic beside the first from where on both are s
 _CROSSING = 5e-3  # of a point: how near a branch passes that crosses another one there
 
 
-def find_branches(search: Search, asymmetric: bool = True, at: float | None = None) -> list[Branch]:
+def find_branches(search: Search, asymmetric: bool = True, at: float | None = None) -> list[SolutionBranch]:
     """Every branch the seeds lead to, each followed once; the one with the smallest response at `lo` comes first.
 
     Branches with even harmonics that leave odd ones are followed only if `asymmetric`. With `at`, starts are looked for
     at that frequency [rad/s], too.
     """
     odd, seeder = search.problem.odd, search.seeder
-    branches: list[Branch] = []
+    branches: list[SolutionBranch] = []
     starts = starts_of(search)
     everywhere = starts.everywhere if at is None else np.append(at, starts.everywhere)
     seeds = _seeds_of_motions_alike(search, asymmetric, at)
@@ -66,7 +66,7 @@ def _seeds_of_motions_alike(search: Search, asymmetric: bool, at: float | None) 
     return seeds_alike(search, smaller, find_branches(smaller, asymmetric, at))
 
 
-def _follow_new(search: Search, seeds: list[Seed], branches: list[Branch]) -> None:
+def _follow_new(search: Search, seeds: list[Seed], branches: list[SolutionBranch]) -> None:
     """Follow the branches of all starts that do not lie on one already followed, and add them."""
     odd = search.problem.odd
     for seed in seeds:
@@ -75,7 +75,7 @@ def _follow_new(search: Search, seeds: list[Seed], branches: list[Branch]) -> No
             branches.append(followed(search, odd, *start))
 
 
-def third_harmonic(search: Search, branches: list[Branch]) -> float:
+def third_harmonic(search: Search, branches: list[SolutionBranch]) -> float:
     """Largest third harmonic of a single element beside its first, on the symmetric branches in the window."""
     ratios = [0.0]
     for branch in branches:
@@ -88,7 +88,7 @@ def third_harmonic(search: Search, branches: list[Branch]) -> float:
     return max(ratios)
 
 
-def _connect_crossing(search: Search, branch: Branch, branches: list[Branch]) -> None:
+def _connect_crossing(search: Search, branch: SolutionBranch, branches: list[SolutionBranch]) -> None:
     """Connect a branch to those it turns back on: a turn there is no saddle-node but its birth from the other one.
 
     Branches cross where equal absorbers cease to move alike: the branch that is born turns into its mirror image there.
@@ -102,7 +102,7 @@ def _connect_crossing(search: Search, branch: Branch, branches: list[Branch]) ->
             branch.bifurcations[i] = replace(event, kind="branch-point")
 
 
-def _connect_outside(search: Search, branches: list[Branch]) -> None:
+def _connect_outside(search: Search, branches: list[SolutionBranch]) -> None:
     """Connect branches that seem apart because the window cuts off where they hang together.
 
     Those that leave the window are followed much further, and meet the others whose points they come to.
@@ -123,12 +123,12 @@ def _connect_outside(search: Search, branches: list[Branch]) -> None:
                 break
 
 
-def _connect(branch: Branch, other: Branch) -> None:
+def _connect(branch: SolutionBranch, other: SolutionBranch) -> None:
     branch.crossed.append(other)
     other.crossed.append(branch)
 
 
-def _passes(search: Search, branch: Branch, point: Point) -> bool:
+def _passes(search: Search, branch: SolutionBranch, point: Point) -> bool:
     """Whether a branch passes through a located point, as closely as a crossing can be located."""
     n, points = unknowns(search.problem, point.H, branch.odd), branch.points
     y, W = point.y[:n], points.frequency
@@ -141,7 +141,7 @@ def _passes(search: Search, branch: Branch, point: Point) -> bool:
     return False
 
 
-def _response_at(branch: Branch, W: float) -> float:
+def _response_at(branch: SolutionBranch, W: float) -> float:
     """Smallest relative peak of a branch at one of its frequencies; infinite if it has no point there.
 
     Not the amplitude: about another equilibrium that is small, too.

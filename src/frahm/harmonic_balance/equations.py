@@ -19,7 +19,7 @@ from frahm.absorbers import Law
 from frahm.absorbers.packed import law_curvatures, law_force_and_slopes
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import CondensedChange, Problem, condense, coordinates, unknowns
+from frahm.harmonic_balance.condensation import CondensedChange, CondensedSystem, condense, coordinates, unknowns
 from frahm.harmonic_balance.kernels import (
     add_rates,
     add_slopes,
@@ -100,7 +100,7 @@ class Equations(ABC):
     x_scale: float
     scales: tuple[float, float]
     start: Floats
-    problem: Problem = field(init=False)
+    problem: CondensedSystem = field(init=False)
     tables: tuple[Floats, Floats] = field(init=False)
     T: Floats = field(init=False)
 
@@ -138,7 +138,7 @@ class Equations(ABC):
         values.pop(FREQUENCY, None)
         return with_parameters(self.system, **values)
 
-    def orbit(self, y: Floats) -> Orbit:
+    def orbit(self, y: Floats) -> Linearisation:
         """Residual, Jacobian and derivatives by both axes at a scaled point."""
         system, W, X = self.system_at(y), self.frequency_at(y), np.ascontiguousarray(y[: self.n] * self.x_scale)
         pb = condense(system)
@@ -158,23 +158,25 @@ class Equations(ABC):
                 rate = rate + self.projected(pb, of_first(derivative.law.force(z[0]), z))
             changes.append(Change(self, pb, W, rate, condensed, derivative.law))
         along = z, w, derivatives
-        return Orbit(self, pb, W, X, R[:n].copy(), J[:n, :n].copy(), (changes[0], changes[1]), float(truncation), along)
+        return Linearisation(
+            self, pb, W, X, R[:n].copy(), J[:n, :n].copy(), (changes[0], changes[1]), float(truncation), along
+        )
 
-    def _along(self, pb: Problem, W: float, X: Floats) -> tuple[Floats, Floats, Floats]:
+    def _along(self, pb: CondensedSystem, W: float, X: Floats) -> tuple[Floats, Floats, Floats]:
         """Samples z, w (E, N) along an orbit and the derivatives (4, E, N) of the forces there."""
         z, w = self.motion(pb, W, X)
         out = np.empty((4, *z.shape))
         _derivatives(pb, z, w, out)
         return z, w, out
 
-    def motion(self, pb: Problem, W: float, X: Floats) -> tuple[Floats, Floats]:
+    def motion(self, pb: CondensedSystem, W: float, X: Floats) -> tuple[Floats, Floats]:
         """Samples (E, N) of the elements' displacements and velocities for an unknown vector."""
         z = np.empty((pb.directions.shape[1], self.tables[0].shape[1]))
         w = np.empty_like(z)
         _motion(pb, self.H, self.odd, W, np.ascontiguousarray(X), *self.tables, z, w)
         return z, w
 
-    def projected(self, pb: Problem, samples: Floats) -> Floats:
+    def projected(self, pb: CondensedSystem, samples: Floats) -> Floats:
         """What forces with the samples (E, N) on the elements contribute to the residual (n,)."""
         co, si = self.tables
         rows = list(self.harmonics)
@@ -214,7 +216,7 @@ class Change:
     """
 
     equations: Equations
-    problem: Problem
+    problem: CondensedSystem
     W: float
     rate: Floats
     stiffness: CondensedChange | None
@@ -226,7 +228,7 @@ class Change:
             return 1j * k * stiffness_and_slope(self.problem, s)[1]
         return self.stiffness.at(s)[0]
 
-    def applied(self, orbit: Orbit, v: Floats) -> Floats:
+    def applied(self, orbit: Linearisation, v: Floats) -> Floats:
         """Derivative of J v by this axis at fixed X and v."""
         eq, pb = self.equations, self.problem
         out = eq.real_blocks({k: self.block(1j * k * self.W, k) for k in eq.harmonics}) @ v
@@ -243,14 +245,14 @@ class Change:
 
 
 @dataclass
-class Orbit:
+class Linearisation:
     """Residual R (n,), Jacobian J (n, n), and changes along both axes at one point.
 
     `along` holds samples (E, N) of z and w and the forces' derivatives dg/dz, dg/dw, d2g/dz2, d2g/dw2 (4, E, N).
     """
 
     equations: Equations
-    problem: Problem
+    problem: CondensedSystem
     W: float
     X: Floats
     R: Floats
@@ -299,7 +301,7 @@ def of_first(samples: Floats, like: Floats) -> Floats:
     return out
 
 
-def stiffness_and_slope(pb: Problem, s: complex) -> tuple[Complexes, Complexes, Complexes]:
+def stiffness_and_slope(pb: CondensedSystem, s: complex) -> tuple[Complexes, Complexes, Complexes]:
     """S(s), dS/ds (r, r) and the condensed force (r,)."""
     r = pb.M11.shape[0]
     S, dS = np.empty((r, r), complex), np.empty((r, r), complex)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance.branch import Branch, Point, Points, point_between, undescribed
+from frahm.harmonic_balance.branch import Point, Points, SolutionBranch, point_between, undescribed
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.follow import CLOSED, follow
 from frahm.harmonic_balance.search import Search
@@ -21,15 +21,15 @@ _SAME = 1e-5  # relative distance of two solutions that are one
 _ROUNDING = 1e-13  # of a frequency
 
 
-def followed(search: Search, odd: bool, y: Floats, H: int) -> Branch:
+def followed(search: Search, odd: bool, y: Floats, H: int) -> SolutionBranch:
     """Follow a branch from one of its points in both directions."""
     forward, ending = _one_way(search, odd, y, H, 1.0)
     if ending == CLOSED:
-        return Branch(odd, forward, True, (ending,))
+        return SolutionBranch(odd, forward, True, (ending,))
     backward, other = _one_way(search, odd, y, H, -1.0)
     reverse = backward.take(np.arange(len(backward))[:0:-1])
     points = forward.insert(np.zeros(len(reverse), int), replace(reverse, ts=-reverse.ts))
-    return Branch(odd, points, False, (other, ending))
+    return SolutionBranch(odd, points, False, (other, ending))
 
 
 def _one_way(search: Search, odd: bool, y: Floats, H: int, direction: float) -> tuple[Points, int]:
@@ -46,13 +46,13 @@ def _one_way(search: Search, odd: bool, y: Floats, H: int, direction: float) -> 
     return undescribed(search, odd, ys[:count].copy(), ts[:count].copy(), Hs[:count], truncations[:count]), ending
 
 
-def far_from_folds(search: Search, branch: Branch) -> int:
+def far_from_folds(search: Search, branch: SolutionBranch) -> int:
     """The point of a branch in the window where Omega changes most along it: a good one to solve anew at its Omega."""
     rise, W = np.abs(branch.points.rise(search.problem, branch.odd)), branch.points.frequency
     return int(np.argmax(np.where((search.lo <= W) & (search.hi >= W), rise, -1.0)))
 
 
-def lies_on(search: Search, branch: Branch, y: Floats, H: int) -> bool:
+def lies_on(search: Search, branch: SolutionBranch, y: Floats, H: int) -> bool:
     """Whether a solution is a point of a branch already followed: compared in its own plane across the chord of a step.
 
     Only steps that reach its frequency are looked at, or in which the frequency turns.
@@ -64,7 +64,7 @@ def lies_on(search: Search, branch: Branch, y: Floats, H: int) -> bool:
     return any(lies_in_step(search, branch, y, H, y[n], int(i)) for i in steps)
 
 
-def lies_in_step(search: Search, branch: Branch, X: Floats, H: int, W: float, i: int) -> bool:
+def lies_in_step(search: Search, branch: SolutionBranch, X: Floats, H: int, W: float, i: int) -> bool:
     """Whether a solution at Omega = W is the point of the branch in its own plane across the chord of step i."""
     pb, odd = search.problem, branch.odd
     n = unknowns(pb, H, odd)
@@ -85,12 +85,12 @@ def lies_in_step(search: Search, branch: Branch, X: Floats, H: int, W: float, i:
     return bool(np.linalg.norm(apart) < _SAME * np.linalg.norm(y[:n]) / search.x_scale)
 
 
-def point_in_step(search: Search, branch: Branch, i: int, fraction: float = 0.5) -> Point | None:
+def point_in_step(search: Search, branch: SolutionBranch, i: int, fraction: float = 0.5) -> Point | None:
     """Point of a branch between its points i and i + 1; None if Newton's method fails."""
     return point_between(search, branch.odd, branch.points[i], branch.points[i + 1], fraction)
 
 
-def point_at(search: Search, branch: Branch, i: int, W: float) -> Point | None:
+def point_at(search: Search, branch: SolutionBranch, i: int, W: float) -> Point | None:
     """Point of the branch at Omega = W between points i and i + 1, by the Illinois method."""
     lo, hi, (below, above) = 0.0, 1.0, branch.points.frequency[i : i + 2] - W
     found = None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frahm.harmonic_balance.births import MARGIN
-from frahm.harmonic_balance.branch import Branch
+from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.describing import PER_DECADE
 from frahm.harmonic_balance.follow import CLOSED, LEFT
 from frahm.harmonic_balance.search import Search
@@ -76,7 +76,7 @@ def all_known(search: Search, at: float | None) -> bool:
     return at is not None and search.harmonics == 1 and proven and at not in seeder.doubtful
 
 
-def unfinished(branches: list[Branch]) -> list[str]:
+def unfinished(branches: list[SolutionBranch]) -> list[str]:
     """A sentence on every branch that could not be followed to its end."""
     return [
         f"Branch {number} could not be followed to its end; it stops near"

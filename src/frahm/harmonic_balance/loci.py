@@ -15,7 +15,7 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.continuation import ContinuationSettings, CurvePoint, between_points, follow_curve, newton
 from frahm.errors import Outcome
-from frahm.harmonic_balance.branch import Bifurcation, Branch, Point, located
+from frahm.harmonic_balance.branch import Bifurcation, Point, SolutionBranch, located
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import condense, unknowns
 from frahm.harmonic_balance.equations import FREQUENCY, Equations
@@ -75,7 +75,7 @@ class _Start:
     """A located special point: its slice, its orbit and the branches' scales."""
 
     search: Search
-    branch: Branch
+    branch: SolutionBranch
     event: Bifurcation
     point: Point
     slice_value: float

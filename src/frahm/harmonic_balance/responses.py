@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from frahm import readable
 from frahm.arrays import Complexes, Floats, frozen
 from frahm.harmonic_balance.bifurcations import unstable_count
-from frahm.harmonic_balance.branch import Branch
+from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.floquet import monodromy
@@ -144,7 +144,7 @@ def _missing(search: Search, found: Sequence[PeriodicResponse]) -> tuple[str, ..
     return missing(search.system, [response.multipliers for response in found], largest)
 
 
-def responses_on(search: Search, branches: Iterable[Branch], frequency: float) -> list[PeriodicResponse]:
+def responses_on(search: Search, branches: Iterable[SolutionBranch], frequency: float) -> list[PeriodicResponse]:
     """Periodic responses at Omega = `frequency` [rad/s] on branches already followed, by relative amplitude."""
     found: list[PeriodicResponse] = []
     for branch in branches:
@@ -159,7 +159,7 @@ def responses_on(search: Search, branches: Iterable[Branch], frequency: float) -
     return sorted(found, key=lambda response: response.relative_amplitude)
 
 
-def _crossings(search: Search, branch: Branch, W: float) -> list[tuple[Floats, int]]:
+def _crossings(search: Search, branch: SolutionBranch, W: float) -> list[tuple[Floats, int]]:
     """Solutions of a branch at one frequency, after Newton there with harmonics added as needed."""
     out, points = [], branch.points
     for i in np.flatnonzero((points.frequency[:-1] - W) * (points.frequency[1:] - W) <= 0):

@@ -9,7 +9,7 @@ import numpy as np
 
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Floats
-from frahm.harmonic_balance.condensation import Problem, condense, unknowns
+from frahm.harmonic_balance.condensation import CondensedSystem, condense, unknowns
 from frahm.harmonic_balance.found import Budget
 from frahm.harmonic_balance.quasi_static import searched_window
 from frahm.harmonic_balance.seeds import Seeder, seeder_for
@@ -27,7 +27,7 @@ class Search:
     """What a search over one window works with."""
 
     system: System
-    problem: Problem
+    problem: CondensedSystem
     seeder: Seeder
     variation: Variation
     lo: float
@@ -79,7 +79,7 @@ def search_over(system: System, lo: float, hi: float, harmonics: int | None, for
     return Search(system, pb, seeder, variation, lo, hi, outer, scale, width, harmonics, unsearched)
 
 
-def _strongest(pb: Problem, scale: float, hi: float) -> tuple[float, float]:
+def _strongest(pb: CondensedSystem, scale: float, hi: float) -> tuple[float, float]:
     """Largest slope of the elements [N/m] at the largest amplitude expected, and the frequency [rad/s]."""
     z = scale * np.linspace(-1.0, 1.0, 201)
     slopes = [law_force_and_slopes(*row, pb.table, value, 0.0)[1] for row in pb.codes for value in z]

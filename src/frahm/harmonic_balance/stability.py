@@ -8,7 +8,7 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.harmonic_balance.bifurcations import bifurcations_in_step, steps_with_bifurcations, unlocated_in_step
-from frahm.harmonic_balance.branch import Bifurcation, Branch, Point, Points, described, located, points_of
+from frahm.harmonic_balance.branch import Bifurcation, Point, Points, SolutionBranch, described, located, points_of
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.following import point_in_step
 from frahm.harmonic_balance.newton import solve_at
@@ -23,7 +23,7 @@ _STRAIGHT = 1e-9  # bend of a logarithm that is rounding
 _NEAR_CIRCLE = 0.9  # modulus from which on a multiplier may soon leave the unit circle
 
 
-def analyse_stability(search: Search, branch: Branch) -> bool:
+def analyse_stability(search: Search, branch: SolutionBranch) -> bool:
     """Cut a followed branch to the window, find the multipliers of its points, and locate the bifurcations on it.
 
     Returns whether any of it lies in the window.
@@ -38,7 +38,7 @@ def analyse_stability(search: Search, branch: Branch) -> bool:
     return True
 
 
-def _branch_points_outside(search: Search, branch: Branch, inside: np.ndarray) -> list[Bifurcation]:
+def _branch_points_outside(search: Search, branch: SolutionBranch, inside: np.ndarray) -> list[Bifurcation]:
     """Losses of symmetry where a followed branch lies outside the window."""
     found: list[Bifurcation] = []
     W = branch.points.frequency
@@ -49,7 +49,7 @@ def _branch_points_outside(search: Search, branch: Branch, inside: np.ndarray) -
         rows = rows[(W[rows] >= search.outer[0]) & (W[rows] <= search.outer[1])]
         if len(rows) < 2:
             continue
-        part = Branch(True, described(search, True, branch.points.take(rows)), False, ())
+        part = SolutionBranch(True, described(search, True, branch.points.take(rows)), False, ())
         for i in np.flatnonzero(steps_with_bifurcations(search, part)):
             if search.budget.bifurcations <= 0:
                 break
@@ -59,7 +59,7 @@ def _branch_points_outside(search: Search, branch: Branch, inside: np.ndarray) -
     return found
 
 
-def _cut_to_window(search: Search, branch: Branch) -> Points:
+def _cut_to_window(search: Search, branch: SolutionBranch) -> Points:
     """The points of a branch in the window, with points exactly on its edges; pieces stay in order along the branch."""
     W = branch.points.frequency
     inside = np.flatnonzero((search.lo <= W) & (search.hi >= W))
@@ -84,7 +84,7 @@ def _edges_crossed(W: Floats, edges: tuple[float, float]) -> tuple[np.ndarray, F
     return steps[order], crossed[order]
 
 
-def _on_edge(search: Search, branch: Branch, i: int, edge: float) -> Point:
+def _on_edge(search: Search, branch: SolutionBranch, i: int, edge: float) -> Point:
     """Point of the branch at Omega = edge between points i and i + 1."""
     pb, odd = search.problem, branch.odd
     H = int(max(branch.points.Hs[i : i + 2]))
@@ -97,7 +97,7 @@ def _on_edge(search: Search, branch: Branch, i: int, edge: float) -> Point:
     return Point(y if ok else a.y, (1 - f) * a.t + f * b.t, H)
 
 
-def _refine(search: Search, branch: Branch) -> None:
+def _refine(search: Search, branch: SolutionBranch) -> None:
     """Insert points where a multiplier may leave the unit circle and come back between two points, or moves far."""
     for _ in range(_ROUNDS):
         m, W = branch.points.multipliers, branch.points.frequency
@@ -120,7 +120,7 @@ def _refine(search: Search, branch: Branch) -> None:
             return
 
 
-def _insert_midpoints(search: Search, branch: Branch, steps: np.ndarray) -> bool:
+def _insert_midpoints(search: Search, branch: SolutionBranch, steps: np.ndarray) -> bool:
     """Insert a point in the middle of every listed step; returns whether any was inserted."""
     middles = [(int(i), point_in_step(search, branch, int(i))) for i in steps]
     new = [(i, point) for i, point in middles if point is not None]
@@ -128,7 +128,7 @@ def _insert_midpoints(search: Search, branch: Branch, steps: np.ndarray) -> bool
     return bool(new)
 
 
-def _insert(search: Search, branch: Branch, new: list[tuple[int, Point]]) -> None:
+def _insert(search: Search, branch: SolutionBranch, new: list[tuple[int, Point]]) -> None:
     """Insert points in the steps of these numbers."""
     if new:
         steps = np.array([i for i, _ in new])
@@ -136,7 +136,7 @@ def _insert(search: Search, branch: Branch, new: list[tuple[int, Point]]) -> Non
         branch.points = branch.points.insert(steps + 1, described(search, branch.odd, added))
 
 
-def _locate_bifurcations(search: Search, branch: Branch) -> None:
+def _locate_bifurcations(search: Search, branch: SolutionBranch) -> None:
     """Locate every change of stability or direction along the branch and put its point on the branch."""
     new: list[tuple[int, Point]] = []
     for i in np.flatnonzero(steps_with_bifurcations(search, branch)):

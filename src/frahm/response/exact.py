@@ -9,8 +9,8 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.harmonic_balance import (
-    Branch,
     Search,
+    SolutionBranch,
     check_rest,
     connected,
     find_branches,
@@ -41,7 +41,7 @@ def exact_curve(
 
 def curve_and_branches(
     system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None
-) -> tuple[ResponseCurve, Search | None, list[Branch]]:
+) -> tuple[ResponseCurve, Search | None, list[SolutionBranch]]:
     """`exact_curve`, with the search and the branches behind it; a linear system has none."""
     settings: dict[str, Any] = {
         "method": "harmonic-balance",
@@ -57,7 +57,9 @@ def curve_and_branches(
     return _assembled(system, branches, search, settings), search, branches
 
 
-def _assembled(system: System, branches: list[Branch], search: Search, settings: dict[str, Any]) -> ResponseCurve:
+def _assembled(
+    system: System, branches: list[SolutionBranch], search: Search, settings: dict[str, Any]
+) -> ResponseCurve:
     special, doubtful = [], [*search.unsearched, *search.budget.sentences(), *not_proven(search)]
     for number, branch in enumerate(branches):
         for event in branch.bifurcations:
@@ -99,7 +101,7 @@ def _assembled(system: System, branches: list[Branch], search: Search, settings:
     )
 
 
-def _not_located(number: int, branch: Branch) -> list[str]:
+def _not_located(number: int, branch: SolutionBranch) -> list[str]:
     """What was seen but not located on a branch: a sentence for each, or one for many of a kind."""
     sentences = []
     for kind in dict.fromkeys(event.kind for event in branch.bifurcations if not event.located):
@@ -112,7 +114,7 @@ def _not_located(number: int, branch: Branch) -> list[str]:
     return sentences
 
 
-def _beyond_numbers(number: int, branch: Branch) -> list[str]:
+def _beyond_numbers(number: int, branch: SolutionBranch) -> list[str]:
     """Sentences where multipliers are no numbers."""
     multipliers, W = branch.points.multipliers, branch.points.frequency
     unknown = np.any(np.isnan(multipliers), axis=1)
@@ -129,7 +131,7 @@ def _beyond_numbers(number: int, branch: Branch) -> list[str]:
     ]
 
 
-def _growth(branch: Branch) -> Floats:
+def _growth(branch: SolutionBranch) -> Floats:
     """Largest growth rate [1/s] from the multipliers of the map over half a period or a whole one."""
     span = (math.pi if branch.odd else 2 * math.pi) / branch.points.frequency
     largest = np.max(np.abs(branch.points.multipliers), axis=1)
