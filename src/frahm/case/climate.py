@@ -10,9 +10,8 @@ from pydantic import Field, field_validator, model_validator
 from frahm.case.quantities import Quantity, refusal
 from frahm.case.section import CaseSection
 from frahm.case.table_files import Column, table_rows
+from frahm.readable import DAY
 
-DAY = 86_400.0  # [s]
-YEAR = 365.25 * DAY  # [s]
 SUM_TOLERANCE = 1e-3  # a printed table of a few hundred rounded probabilities misses one by less
 _COLUMNS = (
     Column("speed", "m/s"),

@@ -14,6 +14,7 @@ from frahm.errors import ParameterError
 from frahm.structure import Beam, BeamModes, ModalPipe, PointMass, Support, beam_modes, modal_pipe
 from frahm.structure.modes import MOST_MODES
 
+STEEL_MODULUS, STEEL_DENSITY = 2.06e11, 7850.0  # of structural steel [Pa, kg/m^3]
 SUPPORTS = ("pinned", "clamped", "free", "spring")
 LIFTS = ("uniform", "mode-shape")
 
@@ -69,10 +70,14 @@ class Tube(CaseSection):
         title="Length of the tube", description="All spans together; the wind blows along all of it."
     )
     youngs_modulus: Annotated[float, Quantity("Pa", "E", above=0)] = Field(
-        default=2.06e11, title="Young's modulus", description="Of the tube's material; the default is structural steel."
+        default=STEEL_MODULUS,
+        title="Young's modulus",
+        description="Of the tube's material; the default is structural steel.",
     )
     density: Annotated[float, Quantity("kg/m^3", "rho_s", above=0)] = Field(
-        default=7850.0, title="Density of the tube", description="Of its material; the default is structural steel."
+        default=STEEL_DENSITY,
+        title="Density of the tube",
+        description="Of its material; the default is structural steel.",
     )
     contained_mass: Annotated[float, Quantity("kg/m", "m_c", at_least=0)] = Field(
         default=0.0, title="Contained mass", description="Mass per length of what is inside."

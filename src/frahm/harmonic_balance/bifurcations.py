@@ -21,7 +21,7 @@ from frahm.harmonic_balance.search import Search
 # Moduli this close to one are neutral: a sink without linear spring that hardly moves returns nowhere by itself.
 NEUTRAL = 1e-9
 _NOISE = 1e-13  # of the largest modulus: multipliers below drown in its rounding
-_COMPLEX = 1e-6
+COMPLEX = 1e-6  # imaginary part, of the modulus, from which on a multiplier is one of a pair
 _DEEPEST = 5
 _SHARP = 2e-11  # of the frequency: how sharply a point is located where the equations are regular
 
@@ -115,7 +115,7 @@ def _beside(here: _End, end: _End, rank: int) -> _End:
     values = here.multipliers
     critical = int(np.argmin(np.abs(values - 1))) if rank < 0 else rank
     others = np.delete(values, critical)
-    pair = rank >= 0 and abs(values[rank].imag) > _COMPLEX * abs(values[rank])
+    pair = rank >= 0 and abs(values[rank].imag) > COMPLEX * abs(values[rank])
     if pair:
         others = np.delete(others, np.argmin(np.abs(others - values[rank].conjugate())))
     certain = int(unstable_count(others))
@@ -140,7 +140,7 @@ def _kind(odd: bool, folded: bool, multiplier: complex) -> str:
     """Kind of bifurcation from the critical multiplier of the (half) map."""
     if folded:
         return "saddle-node"
-    if abs(multiplier.imag) > _COMPLEX * abs(multiplier):
+    if abs(multiplier.imag) > COMPLEX * abs(multiplier):
         return "neimark-sacker"
     if multiplier.real > 0:
         return "branch-point"

@@ -13,10 +13,11 @@ from frahm.harmonic_balance.births import seeds_beside
 from frahm.harmonic_balance.branch import Point, SolutionBranch, connected
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.following import far_from_folds, followed, lies_on
-from frahm.harmonic_balance.search import Search, search_over
+from frahm.harmonic_balance.search import LOWEST, Search, search_over
 from frahm.harmonic_balance.seeds import Seed, two_harmonic_seeds
 from frahm.harmonic_balance.stability import analyse_stability
 from frahm.harmonic_balance.starts import solve_seed, starts_of
+from frahm.tolerances import TINY
 
 _BEYOND = 12  # windows beyond the upper edge in which branches that leave it are followed
 _STRONG_FREQUENCIES = 9
@@ -84,7 +85,7 @@ def third_harmonic(search: Search, branches: list[SolutionBranch]) -> float:
             continue
         inside = (points.frequency >= search.lo) & (points.frequency <= search.hi) & (points.Hs >= 3)
         first, third = (np.hypot(points.ys[inside, k], points.ys[inside, k + 1]) for k in (0, 2))
-        ratios.append(float(np.max(third / np.maximum(first, 1e-300), initial=0.0)))
+        ratios.append(float(np.max(third / np.maximum(first, TINY), initial=0.0)))
     return max(ratios)
 
 
@@ -109,7 +110,7 @@ def _connect_outside(search: Search, branches: list[SolutionBranch]) -> None:
     """
     hanging = connected(branches)
     width = search.hi - search.lo
-    far = replace(search, outer=(0.02 * search.lo, search.hi + _BEYOND * width))
+    far = replace(search, outer=(LOWEST * search.lo, search.hi + _BEYOND * width))
     for branch in branches:
         if branch.closed or branch.parent is not None or any(branch is other for other in hanging):
             continue

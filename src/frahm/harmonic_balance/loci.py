@@ -15,6 +15,7 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.continuation import ContinuationSettings, CurvePoint, between_points, follow_curve, newton
 from frahm.errors import Outcome
+from frahm.harmonic_balance.bifurcations import COMPLEX
 from frahm.harmonic_balance.branch import Bifurcation, Point, SolutionBranch, located
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import condense, unknowns
@@ -32,7 +33,6 @@ _MOST_HARMONICS = 61
 _GOAL = 1e-6
 _RESIDUAL, _MOST_STEPS = 1e-9, 12  # of Newton's method, in scaled unknowns
 _EDGE = 1e-9  # a point this far beyond the bounds lies on them
-_COMPLEX = 1e-6  # imaginary part from which on a multiplier is one of a pair
 _RETURN = 0.5  # cosine of the angle by which a curve in its plane turns back at a cusp
 _TURN = 0.5  # change of a multiplier's argument from point to point [rad], above which it has wrapped around
 _ON_SLICE = (0.3, 2e-3, 0.05)  # one point on a slice: of the step and of the window in frequency, of the peak
@@ -255,7 +255,7 @@ def _angular_rate(start: _Start) -> float:
     harmonics_of(pb, H, odd, y, u)
     values = np.empty(2 * start.search.variation.K.shape[0], complex)
     map_multipliers(pb, start.search.variation, H, odd, W, u, values)
-    pairs = values[values.imag > _COMPLEX]
+    pairs = values[values.imag > COMPLEX]
     critical = pairs[np.argmin(np.abs(np.log(np.abs(pairs))))]
     return float(np.angle(critical) * W / (math.pi if odd else 2 * math.pi))
 

@@ -19,6 +19,7 @@ from frahm.systems import System
 GOAL = 1e-8
 _ROUGH_GOAL = 1e-6  # with stops or friction, whose force harmonics fall off slowly
 _AUTO_HARMONICS = 101
+LOWEST = 0.02  # of the lower edge of the window: branches are not followed below
 _SCALE_FREQUENCIES = 17
 
 
@@ -73,7 +74,7 @@ def search_over(system: System, lo: float, hi: float, harmonics: int | None, for
         for seed in seeder.at(float(W), 1.0, first_only=True):
             largest = max(largest, *(float(np.max(np.abs(u))) for u in seed.harmonics.values()))
     width = hi - lo
-    outer = (max(lo - width, 0.02 * lo), hi + width)
+    outer = (max(lo - width, LOWEST * lo), hi + width)
     scale = largest or 1.0
     variation = variation_of(system, *_strongest(pb, scale, hi)) if system.size > 3 else variation_of(system)
     return Search(system, pb, seeder, variation, lo, hi, outer, scale, width, harmonics, unsearched)

@@ -21,12 +21,11 @@ from frahm.harmonic_balance.condensation import CondensedSystem, stiffness_at, s
 from frahm.harmonic_balance.describing import AmplitudeTable, amplitude_table, outer_balances
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.shared_drive import shared_stiffnesses, solutions_at
-from frahm.polynomials import cubic_roots
+from frahm.polynomials import REAL, cubic_roots
 
 _STARTS = 48
 _TWO_HARMONIC_STARTS = 16
 _ROUNDING = 1e-9
-_REAL = 1e-7  # imaginary part of a root that is real but for rounding, relative
 _SAME = 1e-6  # relative difference of two solutions that are one
 _NOTHING = 1e-12  # of the scale: solutions that are all but zero are one
 
@@ -77,7 +76,7 @@ def amplitude_roots(S: complex, F: complex, e: Floats) -> Floats:
     real = np.polynomial.Polynomial([S.real + e[0], *e[1:]])
     polynomial = np.polynomial.Polynomial([0, 1]) * (real * real + S.imag**2) - abs(F) ** 2
     roots = polynomial.trim().roots()
-    keep = (np.abs(roots.imag) < _REAL * np.abs(roots)) & (roots.real > 0)
+    keep = (np.abs(roots.imag) < REAL * np.abs(roots)) & (roots.real > 0)
     return np.sort(roots[keep].real)
 
 

@@ -13,10 +13,10 @@ from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.following import point_in_step
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.search import Search
+from frahm.tolerances import TINY
 
 _QUICK = 0.2  # way of a multiplier near the unit circle from point to point that asks for a point between
 _BEYOND_NUMBERS = 1e300  # stands for a multiplier that no number holds
-_LEAST_NUMBER = 1e-300  # stands for a multiplier of zero, whose logarithm none holds
 _ROUNDS = 6  # of points put between points
 _GRAZING = 0.1  # of its bend: a logarithm whose summit comes as near to zero may have crossed it
 _STRAIGHT = 1e-9  # bend of a logarithm that is rounding
@@ -102,7 +102,7 @@ def _refine(search: Search, branch: SolutionBranch) -> None:
     for _ in range(_ROUNDS):
         m, W = branch.points.multipliers, branch.points.frequency
         m = np.where(np.isfinite(m), m, _BEYOND_NUMBERS)
-        logs = np.log(np.maximum(np.abs(m), _LEAST_NUMBER))
+        logs = np.log(np.maximum(np.abs(m), TINY))
         left, mid, right = logs[:-2], logs[1:-1], logs[2:]
         bend = left - 2 * mid + right
         with np.errstate(divide="ignore", invalid="ignore"):

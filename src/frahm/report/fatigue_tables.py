@@ -8,12 +8,12 @@ from typing import Any
 from frahm import readable
 from frahm.analysis import CaseAnalysis
 from frahm.report.numbers import number
+from frahm.units import MPA
 
 BIN_HEAD = [
     "Wind [m/s]", "Frequency [Hz]", "Share of the time", "Stress range with [MPa]", "without [MPa]", "Motion",
     "Attractors", "Damage with", "weighted", "without",
 ]  # fmt: skip
-_MPA = 1e6
 _CASE, _COMPUTED = "given in the case", "computed"
 
 
@@ -100,4 +100,4 @@ def _life(value: float | None) -> str:
 
 
 def _stress(value: float | None) -> str:
-    return "unbounded" if value is None or value == float("inf") else number(float(value) / _MPA, 3)
+    return "unbounded" if value is None or value == float("inf") else number(float(value) / MPA, 3)

@@ -26,7 +26,7 @@ from frahm.systems import System, detuning_of
 
 _MOST_SENTENCES = 5  # on points of one kind on one branch
 _ROUNDING = 2.0**-52
-_ROUGH = 1e-3  # truncation that is worth a word
+ROUGH = 1e-3  # truncation that is worth a word
 
 
 def exact_curve(
@@ -70,7 +70,7 @@ def _assembled(
             special.append(SpecialPoint(event.kind, W, sigma, pipe, relative, number, interval, status))
         doubtful += _not_located(number, branch) + _beyond_numbers(number, branch)
         rest = float(np.max(branch.points.truncations))
-        if settings["harmonics"] == "auto" and rest > _ROUGH:
+        if settings["harmonics"] == "auto" and rest > ROUGH:
             doubtful.append(
                 f"Branch {number}: up to {100 * rest:.3g} % of the forces lie beyond the highest"
                 " harmonic there is room for, as stops and friction make them; its peaks are no better than that."

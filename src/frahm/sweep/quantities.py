@@ -14,13 +14,12 @@ from frahm.attractors import Attractor, find_attractors, worst_over
 from frahm.attractors.attractor import KINDS
 from frahm.errors import Outcome, ParameterError
 from frahm.response import ResponseCurve, frequency_response, periodic_responses, slow_flow_map
-from frahm.response.exact import exact_curve
+from frahm.response.exact import ROUGH, exact_curve
 from frahm.response.frequency_response import highest_harmonic
 from frahm.sweep.points import StudyPoint
 from frahm.sweep.study import Study
 from frahm.sweep.variables import at_window
 
-_ROUGH = 1e-3  # residual of a response that is worth a word, as in the response curve
 _INNER = ("kappa", "xi2", "detuning")
 
 
@@ -193,7 +192,7 @@ def _responses(point: StudyPoint, asked: Any) -> PointResult:
     stable = [response for response in found if response.stable]
     doubts = found.unverified
     residual = max((response.residual for response in found), default=0.0)
-    if residual > _ROUGH and point.case.analysis.harmonics == "auto":
+    if residual > ROUGH and point.case.analysis.harmonics == "auto":
         doubts += (f"Up to {100 * residual:.3g} % of the forces lie beyond the highest harmonic there is room for.",)
     return PointResult(
         {

@@ -167,10 +167,15 @@ def plan_run(
     *, periods: float, window: int, first_sample: int, samples_per_period: int, tolerance: float | None
 ) -> Plan:
     """Checked plan with a step limit that grows with the length of the run."""
-    tolerance = TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
+    tolerance = checked_tolerance(tolerance)
     whole = float(np.floor(periods))
     max_steps = LEAST_STEPS + STEPS_PER_PERIOD * periods
     return Plan(whole, periods - whole, float(window), first_sample, samples_per_period, tolerance, max_steps)
+
+
+def checked_tolerance(tolerance: float | None) -> float:
+    """Local error per step relative to the size of the motion; the default if none is given."""
+    return TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
 
 
 def run_plan(packed: PackedSystems, runs: Runs, plan: Plan, samples: int, workers: int | None) -> Kept:
