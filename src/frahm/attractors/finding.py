@@ -133,8 +133,9 @@ def attractors_from(
     settling = begin_settling(strobe, responses, periods)
     begun = [seed_states(strobe, responses), starts[:_SCOUTS], *(state[None] for state in others)]
     seeds = settling.settle(np.concatenate(begun))
-    settled = settling.settle(starts, resume=not seeds.interrupted)
-    rest = settling.settle(np.zeros((1, 2 * system.size)), resume=not settled.interrupted)
+    scouts = seeds.part(np.arange(len(begun[0]), len(begun[0]) + len(begun[1])))
+    settled = settling.settle_left(starts, scouts, resume=not seeds.interrupted)
+    rest = settling.settle_left(begun[0][:1], seeds.part(np.arange(1)), resume=not settled.interrupted)
     counted = np.array([outcome is not Outcome.INTERRUPTED for outcome in settled.outcomes], dtype=bool)
     found = describe(settling, settled, counted, int(rest.labels[0]))
     return AttractorSet(

@@ -69,6 +69,19 @@ class Settled:
         """Whether an interruption left states without label."""
         return Outcome.INTERRUPTED in self.outcomes
 
+    def part(self, members: np.ndarray) -> Settled:
+        """Where some of the states went."""
+        outcomes = [self.outcomes[i] for i in members]
+        kept = (self.states, self.periods, self.held, self.held_from)
+        return Settled(self.labels[members], outcomes, *(values[members] for values in kept))
+
+    def put(self, members: np.ndarray, part: Settled) -> None:
+        """Say of some of the states where they went."""
+        for i, outcome in zip(members, part.outcomes, strict=True):
+            self.outcomes[i] = outcome
+        for name in ("labels", "states", "periods", "held", "held_from"):
+            getattr(self, name)[members] = getattr(part, name)
+
 
 class _Nature(enum.IntEnum):
     """What the strobes of a motion have shown so far."""
@@ -152,12 +165,7 @@ class Settling:
 
     def settle(self, states: Floats, resume: bool = True) -> Settled:
         """Label states (N, 2n); an interruption, or `resume` being false after one, leaves the rest unlabelled."""
-        count = len(states)
-        waiting = Outcome.NOT_CONVERGED if resume else Outcome.INTERRUPTED
-        result = Settled(
-            np.full(count, UNLABELLED), [waiting] * count, np.array(states), np.zeros(count, dtype=int),
-            np.full(count, UNLABELLED), np.zeros(count, dtype=int),
-        )  # fmt: skip
+        count, result = len(states), _begun(states, resume)
         self._attempts = _ATTEMPTS
         done, group = 0, max(8, _GROUP // self.strobe.system.size)
         try:
@@ -168,6 +176,15 @@ class Settling:
             for i in range(done, count):
                 if result.outcomes[i] is Outcome.NOT_CONVERGED:
                     result.outcomes[i] = Outcome.INTERRUPTED
+        return result
+
+    def settle_left(self, states: Floats, before: Settled, resume: bool = True) -> Settled:
+        """As `settle`, but for the first of the states, which have been settled `before`, where these have a label."""
+        result = _begun(states, resume)
+        labelled = np.flatnonzero(before.labels != UNLABELLED)
+        result.put(labelled, before.part(labelled))
+        left = np.flatnonzero(result.labels == UNLABELLED)
+        result.put(left, self.settle(states[left], resume))
         return result
 
     def _settle_group(self, result: Settled, active: np.ndarray) -> None:
@@ -361,6 +378,16 @@ class Settling:
         distance, last = orbit.distance(strobes), strobes[-HIGHEST_MULTIPLE:]
         nearer = np.max(distance[-HIGHEST_MULTIPLE:]) < np.min(distance[:HIGHEST_MULTIPLE])
         return index if nearer or orbit.holds(last, orbit_size(self.strobe, strobes)) else None
+
+
+def _begun(states: Floats, resume: bool) -> Settled:
+    """States (N, 2n) before anything is known of them."""
+    count = len(states)
+    waiting = Outcome.NOT_CONVERGED if resume else Outcome.INTERRUPTED
+    return Settled(
+        np.full(count, UNLABELLED), [waiting] * count, np.array(states), np.zeros(count, dtype=int),
+        np.full(count, UNLABELLED), np.zeros(count, dtype=int),
+    )  # fmt: skip
 
 
 def known_orbits(strobe: Stroboscope, states: Sequence[Floats]) -> list[Orbit | None]:
