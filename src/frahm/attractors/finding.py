@@ -52,7 +52,7 @@ def find_attractors(
 
     Motions are started from a scrambled Sobol sample of the region, from rest, beside every unstable periodic response,
     and from the jumps of the slow manifold; stable periodic responses are known from harmonic balance. A motion inside
-    the ball around a stable orbit in which the exact equations contract (a radius verified by sampled iterations) is
+    a ball around a stable orbit in which the exact equations contract (a radius verified by sampled iterations) is
     settled; one that nearly repeats, after up to 64 periods, is refined by Newton's method. One that keeps coming back
     to where it has been, and from where eight of sixteen motions have not left within 2500 periods, is on a modulated
     or chaotic set. As motions leave some chaotic sets in the end, those on one are followed to the last period: the

@@ -214,16 +214,13 @@ class Settling:
         left, strobes = self._carry(result, watched.active, BLOCK, BLOCK, bound)
         watched.keep(left)
         watched.history = np.concatenate([watched.history, strobes], axis=1)[:, -2 * WINDOW * BLOCK :]
-        watched.keep(self._drop_inside_balls(result, watched.active))
-        self._drop_passed_through_balls(result, watched)
+        self._drop_attracted(result, watched)
 
-    def _drop_passed_through_balls(self, result: Settled, watched: _Watched) -> None:
-        """Done is what was in a ball of an orbit at any of its periods: one of its balls may be too small to be met."""
+    def _drop_attracted(self, result: Settled, watched: _Watched) -> None:
+        """Done is what came through a ball of an orbit in its last turn."""
         for index, attractor in enumerate(self.known):
             if len(watched.active) and isinstance(attractor, Orbit):
-                last = watched.history[:, -attractor.multiple :]
-                inside = attractor.contains(last.reshape(-1, last.shape[2])).reshape(last.shape[:2])
-                _label(result, watched.active[inside.any(axis=1)], index)
+                _label(result, watched.active[attractor.attracts(watched.history)], index)
                 watched.keep(watched.active[result.labels[watched.active] == UNLABELLED])
 
     def _carry(
@@ -270,7 +267,7 @@ class Settling:
             watched.tried[at] = 0 if found is None else result.periods[i]  # a beat is for `_look_for_clouds` to try
             watched.refused[at] = result.periods[i] if found is None else 0
             if len(self.known) > known:
-                watched.keep(self._drop_inside_balls(result, watched.active))
+                self._drop_attracted(result, watched)
 
     def _repeats(self, strobes: Floats) -> list[tuple[list[int], list[int]]]:
         """After how many periods each of the motions (N, K, 2n) nearly repeats, and after which better and better."""
@@ -376,7 +373,8 @@ class Settling:
         orbit = self.known[index]
         assert isinstance(orbit, Orbit)
         distance, last = orbit.distance(strobes), strobes[-HIGHEST_MULTIPLE:]
-        nearer = np.max(distance[-HIGHEST_MULTIPLE:]) < np.min(distance[:HIGHEST_MULTIPLE])
+        turns = HIGHEST_MULTIPLE // orbit.multiple
+        nearer = np.max(distance[-turns:]) < np.min(distance[:turns])
         return index if nearer or orbit.holds(last, orbit_size(self.strobe, strobes)) else None
 
 
