@@ -11,7 +11,7 @@ from frahm.harmonic_balance.condensation import condense, unknowns
 from frahm.harmonic_balance.continued import continued
 from frahm.harmonic_balance.over_force import follow_over_force
 from frahm.harmonic_balance.responses import periodic_responses_of, responses_on
-from frahm.harmonic_balance.search import begin
+from frahm.harmonic_balance.search import search_over
 
 PIPE = frahm.build_system("jacket-pipe")
 HOST, OMEGA = PIPE.mass[0, 0], PIPE.reference_frequency
@@ -64,7 +64,7 @@ def test_no_response_on_a_branch_of_the_window_is_missing(number):
     W = OMEGA + detuning
     found = frahm.periodic_responses(system, detuning=detuning)
     assert "continued" in found.searched
-    search = begin(system, W * 0.88, W * 1.12, None)
+    search = search_over(system, W * 0.88, W * 1.12, None)
     on_branches = responses_on(search, find_branches(search, at=W), W)
     assert len(on_branches) >= 3
     for response in on_branches:
