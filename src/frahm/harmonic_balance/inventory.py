@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from frahm.harmonic_balance.alike import moving_alike
 from frahm.harmonic_balance.births import MARGIN
 from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.describing import PER_DECADE
@@ -36,6 +37,13 @@ def inventory_text(search: Search) -> str:
         if search.problem.odd and not seeder.buckled:
             start += ", about the mean 0 only"
     return f"Branches were followed from {start}. {_NOT_SEARCHED}"
+
+
+def exchanges_text(search: Search) -> str:
+    """What to say of branches where absorbers are equal; nothing where none are."""
+    if moving_alike(search.system) is None:
+        return ""
+    return " Absorbers are equal: branches that differ only in which of them carries the motion are all listed."
 
 
 def continued_text() -> str:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from frahm import readable
 from frahm.arrays import Complexes, Floats, frozen
+from frahm.harmonic_balance.alike import are_exchanged, interchangeable
 from frahm.harmonic_balance.bifurcations import unstable_count
 from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.branches import find_branches
@@ -63,6 +64,8 @@ class PeriodicResponse:
         max |x_out| and max |z| over a period [m].
     pipe_amplitude, relative_amplitude : float
         First-harmonic amplitudes [m].
+    element_amplitudes : ndarray, shape (E,)
+        First-harmonic amplitudes [m] of all elements: which absorber carries the motion.
     residual : float
         Force harmonics that nothing balances, relative to all forces [-].
     symmetric : bool
@@ -79,6 +82,7 @@ class PeriodicResponse:
     relative_peak: float
     pipe_amplitude: float
     relative_amplitude: float
+    element_amplitudes: Floats
     residual: float
     symmetric: bool
 
@@ -118,7 +122,8 @@ def periodic_responses_of(
         return known
     continued_ones, complete = _continued(search, frequency)
     if complete:
-        return Found(continued_ones, continued_text(), tuple(search.unsearched))
+        searched = continued_text() + exchanged_text(system, continued_ones)
+        return Found(continued_ones, searched, tuple(search.unsearched))
     branches = find_branches(search, at=frequency)
     found = responses_on(search, branches, frequency)
     found += [response for response in continued_ones if not any(_same(response, other) for other in found)]
@@ -127,7 +132,7 @@ def periodic_responses_of(
         *search.unsearched, *search.budget.sentences(), *not_proven(search, frequency), *unfinished(branches),
         *(_missing(search, found) if found else (NONE_FOUND,)), *(unstable_unproven(search) if every else ()),
     )  # fmt: skip
-    return Found(found, inventory_text(search), doubts)
+    return Found(found, inventory_text(search) + exchanged_text(system, found), doubts)
 
 
 def _of_one_harmonic(search: Search, frequency: float) -> Found[PeriodicResponse] | None:
@@ -140,7 +145,8 @@ def _of_one_harmonic(search: Search, frequency: float) -> Found[PeriodicResponse
         return None
     found = [_response(search, True, X, H, frequency) for X, H in (one for one in solved if one is not None)]
     found = sorted(found, key=lambda response: response.relative_amplitude)
-    return Found(found, "All solutions of the equations of one harmonic at this frequency.", tuple(search.unsearched))
+    searched = "All solutions of the equations of one harmonic at this frequency."
+    return Found(found, searched + exchanged_text(search.system, found), tuple(search.unsearched))
 
 
 def _continued(search: Search, frequency: float) -> tuple[list[PeriodicResponse], bool]:
@@ -163,6 +169,24 @@ def _continued(search: Search, frequency: float) -> tuple[list[PeriodicResponse]
     both = (maps, [response.multipliers for response in found])
     found.sort(key=lambda response: response.relative_amplitude)
     return found, all(add_up(search.system, values, largest) for values in both)
+
+
+def exchanged_text(system: System, responses: Sequence[PeriodicResponse]) -> str:
+    """How many responses are left if those are counted once that an exchange of equal absorbers makes of each other.
+
+    Nothing where no absorbers are equal.
+    """
+    groups = [group for group in interchangeable(system) if len(group) > 1]
+    if not groups:
+        return ""
+    kept: list[PeriodicResponse] = []
+    for response in responses:
+        if not any(are_exchanged(groups, response.harmonics, other.harmonics) for other in kept):
+            kept.append(response)
+    return (
+        f" Absorbers are equal: {len(responses)} responses are listed, {len(kept)} if those that differ only in which"
+        " of the equal ones carries the motion (`element_amplitudes`) are counted once."
+    )
 
 
 def _missing(search: Search, found: Sequence[PeriodicResponse]) -> tuple[str, ...]:
@@ -280,9 +304,14 @@ def _response(
         relative_peak=peaks[1],
         pipe_amplitude=float(abs(rows[1][0])),
         relative_amplitude=float(abs(rows[1][1])),
+        element_amplitudes=_element_amplitudes(search.system, rows[1][2:]),
         residual=float(truncation),
         symmetric=odd,
     )
+
+
+def _element_amplitudes(system: System, X: Complexes) -> Floats:
+    return frozen([abs(element.direction @ X) for element in system.elements])
 
 
 def _same(a: PeriodicResponse, b: PeriodicResponse) -> bool:
@@ -306,6 +335,7 @@ def _linear(system: System, W: float) -> PeriodicResponse:
         relative_peak=relative,
         pipe_amplitude=pipe,
         relative_amplitude=relative,
+        element_amplitudes=_element_amplitudes(system, X),
         residual=0.0,
         symmetric=True,
     )
