@@ -34,10 +34,17 @@ def factorise(A, pivots, n):
                 factor = A[i, k]
                 for j in range(end, n):
                     A[i, j] -= factor * A[k, j]
-        for i in range(end, n):  # only where there are columns behind, so that these are four
+        for i in range(end, n - 1, 2):  # only where there are columns behind, so that these are four
             a, b, c, d = A[i, first], A[i, first + 1], A[i, first + 2], A[i, first + 3]
+            e, f, g, h = A[i + 1, first], A[i + 1, first + 1], A[i + 1, first + 2], A[i + 1, first + 3]
             for j in range(end, n):
-                A[i, j] -= a * A[first, j] + b * A[first + 1, j] + c * A[first + 2, j] + d * A[first + 3, j]
+                p, q, r, s = A[first, j], A[first + 1, j], A[first + 2, j], A[first + 3, j]
+                A[i, j] -= a * p + b * q + c * r + d * s
+                A[i + 1, j] -= e * p + f * q + g * r + h * s
+        if (n - end) % 2 == 1:
+            a, b, c, d = A[n - 1, first], A[n - 1, first + 1], A[n - 1, first + 2], A[n - 1, first + 3]
+            for j in range(end, n):
+                A[n - 1, j] -= a * A[first, j] + b * A[first + 1, j] + c * A[first + 2, j] + d * A[first + 3, j]
     return True
 
 
