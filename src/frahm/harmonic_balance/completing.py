@@ -11,7 +11,7 @@ from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.events import LocatedEvent, Point, events_after, events_seen, is_eventful
 from frahm.harmonic_balance.following import midpoint
 from frahm.harmonic_balance.newton import solve_at
-from frahm.harmonic_balance.orbits import describe, same_harmonics
+from frahm.harmonic_balance.orbits import describe, multipliers_along, same_harmonics
 from frahm.harmonic_balance.search import Search, Track
 
 _QUICK = 0.2  # way of a multiplier near the unit circle from point to point that asks for a point between
@@ -49,8 +49,10 @@ def _births_outside(search: Search, track: Track, inside: np.ndarray) -> list[tu
         rows = rows[(track.frequency[rows] >= search.outer[0]) & (track.frequency[rows] <= search.outer[1])]
         if len(rows) < 2:
             continue
+        multipliers = np.empty((len(rows), 2 * search.variation.K.shape[0]), complex)
+        multipliers_along(search.problem, search.variation, True, track.ys[rows], track.Hs[rows], multipliers)
         part = Track(True, track.ys[rows], track.ts[rows], track.Hs[rows], track.truncations[rows],
-                     *described(search, True, track.ys[rows], track.Hs[rows]), False, ())  # fmt: skip
+                     track.columns[rows], multipliers, False, ())  # fmt: skip
         for i in np.flatnonzero(is_eventful(search, part)):
             if search.budget.events <= 0:
                 break
