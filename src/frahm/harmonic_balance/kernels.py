@@ -293,7 +293,7 @@ def residual_and_jacobian(pb, H, odd, W, X, co, si, R, J):
         add_slopes(pb, e, first, step, count, p, J)
         if pb.rates:
             add_rates(pb, e, first, step, count, W, q, J)
-            _add_rate_by_frequency(pb, e, first, step, count, W, u, q, J, n)
+            _add_rate_by_frequency(pb, e, first, step, count, u, q, J, n)
     if not odd:
         for i in range(r):  # harmonic 0 is real
             row = 2 * i + 1
@@ -358,7 +358,7 @@ def _rate_entries(k, m, W, q):
 
 
 @kernel
-def _add_rate_by_frequency(pb, e, first, step, count, W, u, q, J, n):
+def _add_rate_by_frequency(pb, e, first, step, count, u, q, J, n):
     """Add the derivative of G_k by Omega at fixed displacements to column n of the Jacobian."""
     r = pb.M11.shape[0]
     for mk in range(count):
