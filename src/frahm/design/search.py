@@ -23,6 +23,8 @@ from frahm.design.springs import coil_springs
 STROKE, GROWTH, BIRTH, CEILING, SPRINGS, PEAKS = range(6)  # columns of what is judged
 _GRID = {2: (72, 72), 3: (24, 30, 26)}
 _SOBOL = 2**14  # designs of the first look at more parameters
+_SOBOL_OF_GROUPS = 2**11  # the same of several absorbers, whose closed form takes a hundred times as long
+_CONVERGED, _CONVERGED_GROUPS = 1e-6, 1e-3  # spread of the values over their mean that ends a search
 _MEMBERS, _GENERATIONS, _SEED = 36, 80, 1
 _STARTS = 8
 _RESERVE = 1.05  # on the screened stroke, where springs must fit
@@ -75,9 +77,12 @@ class Limits:
     stress: float | None = None
 
     def filling(self, designs: Floats, stroke: Floats) -> Floats:
-        """Share (D,) of their free length that the coils of transverse springs of designs (D, 5) take [-]."""
+        """Share (D,) of their free length that the coils of transverse springs of designs (D, 5 N) take [-]."""
         if self.stress is None:
             return np.zeros(len(designs))
+        if designs.shape[1] > 5:
+            parts = [designs[:, at : at + 5] for at in range(0, designs.shape[1], 5)]
+            return np.asarray(np.max([self.filling(part, stroke) for part in parts], axis=0))
         springs = coil_springs(designs[:, LINEAR], designs[:, CUBIC], stroke, self.room, self.stress)
         there = designs[:, CUBIC] > 0
         return np.divide(springs.solid, springs.free, out=np.zeros(len(designs)), where=there)
@@ -103,15 +108,19 @@ class TierOne:
     objective: Objective
     limits: Limits
     ledger: Ledger = field(default_factory=Ledger)
+    known: Floats = field(default_factory=lambda: np.empty((0, 5)))  # designs the search starts from besides
 
     def __post_init__(self) -> None:
-        if self.space.size in _GRID:
+        if self.space.count == 1 and self.space.size in _GRID:
             axes = [np.linspace(0.0, 1.0, n) for n in _GRID[self.space.size]]
             self.grid = np.array(list(itertools.product(*axes)))
             self.step = 1.0 / (np.array(_GRID[self.space.size]) - 1)
         else:
-            self.grid = qmc.Sobol(self.space.size, seed=_SEED).random(_SOBOL)
-            self.step = np.full(self.space.size, _SOBOL ** (-1 / self.space.size))
+            number = _SOBOL if self.space.count == 1 else _SOBOL_OF_GROUPS
+            self.grid = qmc.Sobol(self.space.size, seed=_SEED).random(number)
+            self.step = np.full(self.space.size, number ** (-1 / self.space.size))
+        if len(self.known):
+            self.grid = np.vstack([self.grid, np.clip(self.space.units(self.known), 0.0, 1.0)])
         designs = self.space.designs(self.grid)
         self.grid_judged = self.judge(designs)
 
@@ -167,7 +176,7 @@ class TierOne:
         return other
 
     def best(self, limits: Limits, corrections: Corrections) -> tuple[Floats, float] | None:
-        """Design (5,) with the least value expected, and that value; None if no design keeps the limits.
+        """Design (5 N,) with the least value expected, and that value; None if no design keeps the limits.
 
         Differential evolution from the best designs of the grid and the best that lie apart from them.
         """
@@ -184,14 +193,15 @@ class TierOne:
             peaks = self._allowed(units.T, peaks)
             return np.where(np.isfinite(peaks), peaks, worst)
 
+        tolerance = _CONVERGED if self.space.count == 1 else _CONVERGED_GROUPS
         found = differential_evolution(
             objective, [(0.0, 1.0)] * self.space.size, init=members, maxiter=_GENERATIONS, vectorized=True,
-            updating="deferred", polish=False, seed=_SEED, tol=1e-6, mutation=(0.4, 0.9), recombination=0.9,
+            updating="deferred", polish=False, seed=_SEED, tol=tolerance, mutation=(0.4, 0.9), recombination=0.9,
         )  # fmt: skip
         return self.space.designs(found.x[None])[0], float(found.fun)
 
     def avoid(self, design: Floats) -> None:
-        """Search no longer near a design (5,), because it was found worse than it looked."""
+        """Search no longer near a design (5 N,), because it was found worse than it looked."""
         self.ledger.avoided.append(self.space.units(design[None])[0])
 
     def _allowed(self, units: Floats, values: Floats) -> Floats:
