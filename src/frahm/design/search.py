@@ -24,6 +24,7 @@ STROKE, GROWTH, BIRTH, CEILING, SPRINGS, PEAKS = range(6)  # columns of what is 
 _GRID = {2: (72, 72), 3: (24, 30, 26)}
 _SOBOL = 2**14  # designs of the first look at more parameters
 _SOBOL_OF_GROUPS = 2**11  # the same of several absorbers, whose closed form takes a hundred times as long
+_ASKED = 2**8  # of these: how many are asked for their detached curves
 _CONVERGED, _CONVERGED_GROUPS = 1e-6, 1e-3  # spread of the values over their mean that ends a search
 _MEMBERS, _GENERATIONS, _SEED = 36, 80, 1
 _STARTS = 8
@@ -130,11 +131,25 @@ class TierOne:
         """  # noqa: D205
         self.ledger.count += len(designs)
         screening = self.screening
-        births, ceilings = screening.births(designs), fold_ceilings(screening, designs)
+        ceilings = fold_ceilings(screening, designs)
         peaks, others = screening.responses(designs)
+        births = self._births(designs, peaks)
         filling = self.limits.filling(designs, _RESERVE * others[:, 0])
         means = screening.climate_means(designs)
         return np.column_stack([others, births, ceilings, filling, peaks / screening.forces, means])
+
+    def _births(self, designs: Floats, peaks: Floats) -> Floats:
+        """Least factors (D,) on the force at a birth.
+
+        Of many designs of several absorbers only those with the least responses are asked, for the others are not
+        chosen; a search that comes to one of them asks for it then.
+        """
+        if self.space.count == 1 or len(designs) <= _ASKED:
+            return self.screening.births(designs)
+        births = np.full(len(designs), np.inf)
+        best = np.argsort(np.max(peaks, axis=1), kind="stable")[:_ASKED]
+        births[best] = self.screening.births(designs[best])
+        return births
 
     @property
     def peak_columns(self) -> slice:
