@@ -11,6 +11,7 @@ from frahm.compiled import kernel
 _SQRT3 = math.sqrt(3.0)
 _ROUNDING = 2.0**-52
 _FEW = 8.0 * _ROUNDING
+REAL = 1e-7  # imaginary part of a root that is real but for rounding, of its modulus
 
 
 @kernel

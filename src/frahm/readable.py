@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-HOUR, YEAR = 3600.0, 365.25 * 86_400.0  # [s]
+HOUR, DAY, YEAR = 3600.0, 86_400.0, 365.25 * 86_400.0  # [s]
 _MILLE = 1e3
 _MOST_LINES, _WIDEST, _FEW = 12, 110, 4  # of an object at a prompt: lines, characters of one, numbers told one by one
 

@@ -22,6 +22,7 @@ _UNIT = re.compile(rf"{_TERM}(?:[*/· ]{_TERM})*")
 _DECIMAL_COMMA = re.compile(r"[-+]?[0-9]*,[0-9]+(?:[eE][-+]?[0-9]+)?(?=[^0-9,.]|$)")
 _POWER = re.compile(r"(?<=[^\W\d_])(-?[1-9])(?![0-9.])")  # of the conventions for netCDF: m s-1 is m*s^-1
 _LONGEST = 80
+MPA = 1e6  # [Pa]
 _COMMON = {("mm", "m"): 1e-3, ("Hz", "rad/s"): 2 * math.pi}  # factors, to the last bit those of the registry
 
 # Units that keep their name where others would become products of kg, m and s; the radian is kept apart from 1.

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import frahm
-from frahm.harmonic_balance import begin, branches, find_branches, following, starts
-from frahm.harmonic_balance.events import unstable_count
+from frahm.harmonic_balance import branches, find_branches, following, search_over, starts
+from frahm.harmonic_balance.bifurcations import unstable_count
 from frahm.harmonic_balance.starts import Starts
 from frahm.systems import with_parameters
 from searching import at_most
@@ -131,18 +131,18 @@ def test_number_of_harmonics(system):
 @quickly
 def test_special_points_account_for_every_change_of_the_number_of_unstable_multipliers(system):
     sizes = {"saddle-node": 1, "branch-point": 1, "period-doubling": 1, "neimark-sacker": 2}
-    tracks = find_branches(begin(system, LO, HI, None))
-    located = [(track, event) for track in tracks for event in track.events if event.located]
-    for track in tracks:
+    found = find_branches(search_over(system, LO, HI, None))
+    located = [(branch, event) for branch in found for event in branch.bifurcations if event.located]
+    for branch in found:
         special = {}
         for owner, event in located:  # an asymmetric branch begins at a point of the symmetric one
-            rows = np.flatnonzero(np.all(track.columns == event.columns, axis=1))
-            assert rows.size or owner is not track
+            rows = np.flatnonzero(np.all(branch.points.columns == event.columns, axis=1))
+            assert rows.size or owner is not branch
             special |= {int(row): sizes[event.kind] for row in rows[:1]}
-        counts = unstable_count(track.multipliers)
-        before, passed = None, 0
+        counts = unstable_count(branch.points.multipliers)
+        W, before, passed = branch.points.frequency, None, 0
         for i, count in enumerate(counts):
-            if i > 0 and track.frequency[i] == track.frequency[i - 1]:
+            if i > 0 and W[i] == W[i - 1]:
                 before, passed = None, 0  # the branch was outside the window in between
             if i in special:
                 passed += special[i]

@@ -7,7 +7,7 @@ import dataclasses
 import pytest
 
 from frahm.published.yang2022 import CLAIMS
-from frahm.reproduction.judging import Evidence, Verdict, judge
+from frahm.reproduction.judging import ClaimVerdict, Evidence, judge
 
 NOT_REPRODUCED = {3, 4, 7}
 MISPRINT = {2}
@@ -170,25 +170,25 @@ def evidence_for(claim, **changes):
 
 @pytest.mark.parametrize("claim", CLAIMS, ids=lambda claim: str(claim.id))
 def test_a_claim_that_is_computed_as_printed_is_reproduced(claim):
-    assert judge(claim, evidence_for(claim)).verdict is Verdict.REPRODUCED
+    assert judge(claim, evidence_for(claim)).verdict is ClaimVerdict.REPRODUCED
 
 
 @pytest.mark.parametrize("claim", [c for c in CLAIMS if c.printed], ids=lambda claim: str(claim.id))
 def test_a_claim_whose_number_comes_out_otherwise_is_not(claim):
     name = claim.printed[0].name
     judged = judge(claim, evidence_for(claim, **{name: claim.printed[0].value + 1.0}))
-    assert judged.verdict is Verdict.NOT_REPRODUCED
+    assert judged.verdict is ClaimVerdict.NOT_REPRODUCED
     assert name in judged.explanation
 
 
 @pytest.mark.parametrize("claim", [c for c in CLAIMS if c.statements], ids=lambda claim: str(claim.id))
 def test_a_claim_with_a_statement_that_fails_is_not(claim):
     failing = dataclasses.replace(evidence_for(claim), statements=dict.fromkeys(claim.statements, False))
-    assert judge(claim, failing).verdict is Verdict.NOT_REPRODUCED
+    assert judge(claim, failing).verdict is ClaimVerdict.NOT_REPRODUCED
 
 
 def test_ends_of_a_range_are_not_taken_for_exchanged_amplitudes():
     claim = CLAIMS[4]
     low, high = claim.printed
     judged = judge(claim, evidence_for(claim, **{low.name: high.value, high.name: low.value}))
-    assert judged.verdict is Verdict.NOT_REPRODUCED
+    assert judged.verdict is ClaimVerdict.NOT_REPRODUCED

@@ -9,6 +9,7 @@ from frahm.absorbers.polynomial_laws import Polynomial
 from frahm.absorbers.transverse_springs import TransverseSprings
 from frahm.arrays import Floats, frozen
 from frahm.errors import check_number
+from frahm.polynomials import REAL
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2], by definition
 CUBIC_UP_TO = 0.25  # stroke per length up to which two transverse springs count as cubic; exact/cubic is .955 there
@@ -24,7 +25,7 @@ def equilibria(law: Law) -> Floats:
     """
     if law.stops is None and isinstance(law, Polynomial):
         roots = np.polynomial.Polynomial([-law.weight, *law.coefficients]).trim().roots()
-        real = np.sort(roots[np.abs(roots.imag) <= 1e-7 * np.abs(roots)].real)
+        real = np.sort(roots[np.abs(roots.imag) <= REAL * np.abs(roots)].real)
         apart = np.diff(real, prepend=-np.inf) > 1e-7 * np.max(np.abs(real), initial=0.0)
         return frozen(real[apart])
     from scipy.optimize import brentq  # takes long to load

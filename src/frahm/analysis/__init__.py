@@ -2,7 +2,7 @@
 
 from frahm.analysis.analysis import (
     STEPS,
-    Analysis,
+    CaseAnalysis,
     Progress,
     Step,
     analyse,
@@ -19,7 +19,7 @@ from frahm.analysis.store import load_analysis, missing_arrays, read_summary, sa
 __all__ = [
     "FORCE_MARGIN",
     "STEPS",
-    "Analysis",
+    "CaseAnalysis",
     "Check",
     "Progress",
     "Section",

@@ -81,7 +81,7 @@ STEPS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Analysis:
+class CaseAnalysis:
     """What is known about a case.
 
     Attributes
@@ -152,7 +152,7 @@ def step_weights(case: Case) -> list[float]:
     return [0.01 if step.run in idle else step.weight for step in STEPS]
 
 
-def analyse(case: Any, *, progress: Progress | None = None) -> Analysis:
+def analyse(case: Any, *, progress: Progress | None = None) -> CaseAnalysis:
     """Analyse a case: responses, slow manifold, motions of the exact equations, checks.
 
     Parameters
@@ -164,7 +164,7 @@ def analyse(case: Any, *, progress: Progress | None = None) -> Analysis:
 
     Returns
     -------
-    Analysis
+    CaseAnalysis
         If the work is interrupted from the keyboard: of the steps that were finished, with `interrupted` set.
 
     Raises
@@ -189,7 +189,7 @@ def analyse(case: Any, *, progress: Progress | None = None) -> Analysis:
     return _concluded(work, interrupted)
 
 
-def _concluded(work: Work, interrupted: bool) -> Analysis:
+def _concluded(work: Work, interrupted: bool) -> CaseAnalysis:
     done = work.done
     results = {"has_absorber": bool(work.case.absorbers), **done.results}
     failed = sum(check.status == FAIL for check in done.checks)
@@ -199,7 +199,7 @@ def _concluded(work: Work, interrupted: bool) -> Analysis:
     )
     results["verdict"] = verdict(results, failed, doubts)
     results["provenance"] = provenance(work.case)
-    return Analysis(
+    return CaseAnalysis(
         case=work.case,
         results=results,
         data=done.data,

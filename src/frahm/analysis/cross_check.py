@@ -11,7 +11,7 @@ from frahm.analysis.section import FAIL, PASS, UNVERIFIED, Check, Section, Work
 from frahm.arrays import Floats, labelled
 from frahm.errors import ParameterError
 from frahm.harmonic_balance import PeriodicResponse
-from frahm.harmonic_balance.events import NEUTRAL
+from frahm.harmonic_balance.bifurcations import NEUTRAL
 from frahm.response import periodic_responses, slow_flow_map
 from frahm.slow_flow import SlowFlow
 from frahm.slow_flow.kernels import NO_ROOT

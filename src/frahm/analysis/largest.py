@@ -12,9 +12,9 @@ from frahm import readable
 from frahm.analysis.section import PASS, UNVERIFIED, Check, Section, Work
 from frahm.harmonic_balance import is_linear
 from frahm.response.own_lift import OwnLift
+from frahm.tolerances import AS_LARGE
 
 Row = dict[str, Any]
-_SAME = 1.01  # a motion larger by less is as large
 _EDGE = 1e-9  # of a frequency: what is no farther beyond the end of the range is at its end
 _SIZES = {"pipe_peak": "motion", "relative_peak": "stroke"}
 FIXED_LIFT = "The fixed lift is not exceeded by the winds of its window"
@@ -60,7 +60,7 @@ def _is_inside(work: Work, frequency: float) -> bool:
 def _larger(row: Row, worst: Row | None) -> list[str]:
     """In what a motion is larger than the worst: pipe or stroke; in both where there is none."""
     known = [name for name in _SIZES if row[name] is not None]
-    return [name for name in known if worst is None or row[name] > _SAME * worst[name]]
+    return [name for name in known if worst is None or row[name] > AS_LARGE * worst[name]]
 
 
 def _doubts(work: Work, worst: Row, candidates: Sequence[Row]) -> list[str]:
@@ -87,7 +87,7 @@ def _outside(work: Work, met: Sequence[Row], largest: Row) -> tuple[str, ...]:
     lo, hi = work.range.widened().frequency
     beyond = [row for row in met if row["settled"] and not lo <= row["frequency"] <= hi]
     row = max(beyond, key=lambda one: one["pipe_peak"], default=None)
-    if row is None or not row["pipe_peak"] > _SAME * largest["pipe_peak"]:
+    if row is None or not row["pipe_peak"] > AS_LARGE * largest["pipe_peak"]:
         return ()
     place = f"at detuning {row['detuning']:.4g} rad/s"
     return (

@@ -8,7 +8,7 @@ import numpy as np
 
 from frahm.analysis.section import Section, Work
 from frahm.arrays import labelled
-from frahm.slow_flow import Folds, SlowManifold, slow_manifold
+from frahm.slow_flow import Folds, slow_manifold
 
 _POINTS = 600
 _NO_FOLDS = (
@@ -24,7 +24,7 @@ def manifold(work: Work) -> Section:
     if isinstance(work.slow_flow, str):
         return Section()
     relation = slow_manifold(work.slow_flow, work.slow_flow.omega)
-    Z = np.linspace(0.0, _reach(relation), _POINTS)
+    Z = np.linspace(0.0, relation.reach, _POINTS)
     stable = np.ones(Z.size, dtype=int)
     if relation.folds is not None:
         low, high = relation.folds.relative
@@ -40,14 +40,6 @@ def manifold(work: Work) -> Section:
         data={"slow_manifold": xr.Dataset(variables)},
         notes=() if relation.folds else (_NO_FOLDS,),
     )
-
-
-def _reach(relation: SlowManifold) -> float:
-    """Largest |Z| [m] worth showing."""
-    if relation.folds is not None:
-        return 1.35 * max(relation.folds.landing)
-    slow = relation.slow
-    return float(1.6 * np.sqrt(slow.rho2 * relation.frequency**2 / (0.75 * slow.kappa)))
 
 
 def _folds(folds: Folds | None) -> dict[str, Any] | None:

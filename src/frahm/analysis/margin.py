@@ -12,7 +12,7 @@ import numpy as np
 from frahm import readable
 from frahm.analysis.linear import others_of
 from frahm.analysis.section import Section, Work
-from frahm.harmonic_balance import LOOKED_AHEAD, begin, births_ahead, is_linear
+from frahm.harmonic_balance import LOOKED_AHEAD, births_ahead, is_linear, search_over
 from frahm.loads import OperatingRange
 from frahm.response import DetachedCurveEvent, ResponseCurve, detached_curve_events
 from frahm.response.exact import exact_curve
@@ -106,7 +106,7 @@ def _next_birth(system: System, within: OperatingRange, most: float) -> dict[str
     """The nearest birth at more force, below `most` times it: also of a curve that merges again soon after."""
     force = 1.0
     while force < most:
-        search = begin(with_parameters(system, force=force), *within.frequency, None, within.factor)
+        search = search_over(with_parameters(system, force=force), *within.frequency, None, within.factor)
         for factor, _ in births_ahead(search):
             born = _born(system, within, force * factor) if force * factor < most else None
             if born is not None:

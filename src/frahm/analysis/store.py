@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from frahm.analysis.analysis import SCHEMA, Analysis
+from frahm.analysis.analysis import SCHEMA, CaseAnalysis
 from frahm.analysis.section import Check
 from frahm.case import load_case
 from frahm.errors import ParameterError, door
@@ -22,7 +22,7 @@ _KINDS_COMPRESSED = "fiu"
 _ALLOWED = f"a folder that `frahm run` wrote, with {SUMMARY_FILE} in it"
 
 
-def save_analysis(analysis: Analysis, folder: str | Path) -> list[Path]:
+def save_analysis(analysis: CaseAnalysis, folder: str | Path) -> list[Path]:
     """Write the three files into an existing folder, the summary first, and return their paths.
 
     All of them are made in memory before anything is written; arrays of an earlier analysis go before its summary does,
@@ -44,7 +44,7 @@ def save_analysis(analysis: Analysis, folder: str | Path) -> list[Path]:
     return [folder / name for name in (CASE_FILE, SUMMARY_FILE, ARRAYS_FILE)]
 
 
-def load_analysis(folder: str | Path, *, arrays: bool = True) -> Analysis:
+def load_analysis(folder: str | Path, *, arrays: bool = True) -> CaseAnalysis:
     """Read what `save_analysis` wrote.
 
     Parameters
@@ -65,7 +65,7 @@ def load_analysis(folder: str | Path, *, arrays: bool = True) -> Analysis:
     with door("DIR", str(folder), _ALLOWED, f"{SUMMARY_FILE} is damaged."):
         results = summary["results"]
         notes, interrupted = results.pop("notes"), results.pop("interrupted")
-        return Analysis(
+        return CaseAnalysis(
             case=load_case(summary["case"]),
             results=results,
             data=data,
@@ -127,14 +127,14 @@ def separated(whole: xr.Dataset) -> dict[str, xr.Dataset]:
     return data
 
 
-def _is_there(analysis: Analysis, path: Path) -> bool:
+def _is_there(analysis: CaseAnalysis, path: Path) -> bool:
     try:
         return path.is_file() and load_case(path).digest == analysis.case.digest
     except ParameterError:
         return False
 
 
-def _packed_arrays(analysis: Analysis) -> bytes | memoryview:
+def _packed_arrays(analysis: CaseAnalysis) -> bytes | memoryview:
     whole = joined(analysis.data).assign_attrs(
         frahm_version=analysis.version, case=analysis.case.name, case_digest=analysis.case.digest
     )

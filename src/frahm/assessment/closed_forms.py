@@ -8,8 +8,7 @@ from scipy.special import gamma, gammainc, gammaincc
 
 from frahm.errors import check_number
 from frahm.published.dnv_rp_c203 import SNCurve
-
-_MPA = 1e6
+from frahm.units import MPA
 
 
 def constant_range_damage(curve: SNCurve, stress_range: float, cycles: float) -> float:
@@ -35,10 +34,10 @@ def weibull_damage(curve: SNCurve, largest_range: float, cycles: float, shape: f
     shape : float
         h [-].
     """
-    S0 = check_number("largest_range", largest_range, above=0, unit="Pa") / _MPA
+    S0 = check_number("largest_range", largest_range, above=0, unit="Pa") / MPA
     n0, h = check_number("cycles", cycles, above=1), check_number("shape", shape, above=0)
     q = S0 / math.log(n0) ** (1 / h)
-    limit = (curve.limit / _MPA / q) ** h
+    limit = (curve.limit / MPA / q) ** h
     upper, lower = 1 + curve.m1 / h, 1 + curve.m2 / h
     above = q**curve.m1 / 10**curve.log_a1 * gamma(upper) * gammaincc(upper, limit)
     below = q**curve.m2 / 10**curve.log_a2 * gamma(lower) * gammainc(lower, limit)

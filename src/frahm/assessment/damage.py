@@ -14,11 +14,10 @@ from frahm.attractors.attractor import KINDS
 from frahm.case import Case
 from frahm.loads import Persistence
 from frahm.published.dnv_rp_c203 import SOURCE
+from frahm.readable import YEAR
 
 if TYPE_CHECKING:
     import xarray as xr
-
-YEAR = 365.25 * 86_400.0  # [s]
 
 
 @dataclass(frozen=True, eq=False)

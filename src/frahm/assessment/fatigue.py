@@ -27,9 +27,9 @@ from frahm.loads import (
     wind_excitation,
 )
 from frahm.systems import build_system
+from frahm.tolerances import AS_LARGE
 
 _FIRST = 0.5  # share of the bins laid out before it is known where the damage changes
-_LARGER = 1.01  # how much larger a range elsewhere along the pipe must be to count the damage there, too
 _PLACES = 3  # sections tried
 _OUTSIDE = 200  # panels for the winds outside the band
 
@@ -139,7 +139,7 @@ def _at_the_worst_place(survey: WindSurvey, case: Case, climate: WindClimate, ed
         return survey
     best, tried = survey, {survey.place.section}
     for _ in range(_PLACES):
-        larger = best.larger_place(*places, least=_LARGER)
+        larger = best.larger_place(*places, least=AS_LARGE)
         if larger is None or larger[0] in tried:
             break
         tried.add(larger[0])

@@ -22,8 +22,8 @@ from frahm.case import Case
 from frahm.harmonic_balance import PeriodicResponse, periodic_responses_of
 from frahm.loads import wind_excitation
 from frahm.systems import System, build_system
+from frahm.tolerances import ALIKE
 
-_ALIKE = 0.02  # of the peak: motions that differ less are one, as in the search for attractors
 _UNLIKE = 0.05  # relative difference of rates above which a neighbour's worst motion is tried, too
 _ROUNDS = 3
 Seen = Callable[[int], None]
@@ -223,8 +223,8 @@ def _alike(a: Attractor, b: Attractor) -> bool:
     """Whether rms and rare peaks of two motions agree within 2 % of the peak, or these as far as they are known."""
     pipe, stroke = max(a.pipe_peak, b.pipe_peak), max(a.relative_peak, b.relative_peak)
     return bool(
-        abs(a.pipe_rms - b.pipe_rms) <= _ALIKE * pipe
-        and abs(a.relative_rms - b.relative_rms) <= _ALIKE * stroke
+        abs(a.pipe_rms - b.pipe_rms) <= ALIKE * pipe
+        and abs(a.relative_rms - b.relative_rms) <= ALIKE * stroke
         and _levels_agree(
             a.pipe_peak_expected, a.pipe_peak_expected_interval, b.pipe_peak_expected, b.pipe_peak_expected_interval
         )
@@ -240,4 +240,4 @@ def _alike(a: Attractor, b: Attractor) -> bool:
 def _levels_agree(a: float, interval_a: tuple[float, float], b: float, interval_b: tuple[float, float]) -> bool:
     """Whether two levels of rare peaks agree within 2 %, or as far as they are known."""
     scatter = [high - low for low, high in (interval_a, interval_b) if np.isfinite(high - low)]
-    return abs(a - b) <= max(_ALIKE * max(a, b), sum(scatter))
+    return abs(a - b) <= max(ALIKE * max(a, b), sum(scatter))

@@ -17,11 +17,11 @@ from frahm.arrays import Floats, frozen
 from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.attractors.clouds import MEMBERS, STAY, WATCH
 from frahm.attractors.stroboscope import Stroboscope
+from frahm.tolerances import ALIKE
 
 FINE = 3.3e-4  # how near its neighbours the largest is looked at in the end, of a frequency
 _ROUNDS = 24
 _NUDGE = 1e-7  # of a state: motions so near each other tell as much as any of a chaotic set
-_ALIKE = 0.02  # of the larger: sizes nearer than this are those of one attractor
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class Carried:
     def is_like(self, other: Carried) -> bool:
         """Whether the sizes of both agree."""
         pairs = [(size(self), size(other)) for size in (pipe_size, stroke_size, rms_size)]
-        return all(abs(a - b) <= _ALIKE * max(a, b) for a, b in pairs)
+        return all(abs(a - b) <= ALIKE * max(a, b) for a, b in pairs)
 
 
 Motion = Attractor | Carried

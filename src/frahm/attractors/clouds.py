@@ -18,6 +18,7 @@ from frahm.arrays import Floats, frozen
 from frahm.attractors.modulation import Exponent, lyapunov
 from frahm.attractors.orbits import Orbit
 from frahm.attractors.stroboscope import Stroboscope
+from frahm.tolerances import TINY
 
 MEMBERS = 8
 STAY, WATCH = 1500, 1000  # periods a cloud must hold its members before it is believed, and while they are watched
@@ -27,7 +28,7 @@ _STATIONARY, BELONGS, INSIDE = 0.8, 0.5, 0.9  # shares of strobes that must lie 
 _LEAST_REACH = 0.25  # in standard deviations of the strobes: clouds nearer to each other than this count as one
 _REACHED = 0.99  # share of a motion's strobes that those of others on the attractor come near to
 _QUERIES = 100  # strobes of a motion that are looked at
-_FLAT, _TINY = 1e-9, 1e-300  # of the largest coordinate: a coordinate that varies by less does not vary
+_FLAT = 1e-9  # of the largest coordinate: a coordinate that varies by less does not vary
 _LEAST_BLOCKS, _MOST_ROUNDS = 64, 32  # of WATCH periods of each member, and rounds of them: for peaks that are rare
 _STRETCHES, _STRETCH, _HIGHEST = 48, 251, 17  # of a drift: stretches, their periods (a prime), strobes at their ends
 
@@ -170,7 +171,7 @@ def _watched(strobe: Stroboscope, states: Floats) -> tuple[Floats, Floats, Float
 def _tree(points: Floats) -> tuple[cKDTree, Floats, float]:
     """Tree of the points (K, 2n), the scale they are divided by, and how far they may be from each other."""
     scale = np.std(points, axis=0)
-    scale = np.maximum(scale, _FLAT * np.max(np.abs(points), initial=_TINY, axis=0))
+    scale = np.maximum(scale, _FLAT * np.max(np.abs(points), initial=TINY, axis=0))
     tree = cKDTree(points / scale)
     nearest = tree.query(tree.data, k=2)[0][:, 1]
     return tree, scale, max(2.0 * float(np.quantile(nearest, 0.95)), _LEAST_REACH)

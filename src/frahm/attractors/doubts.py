@@ -11,8 +11,8 @@ from frahm.attractors.attractor import Attractor, AttractorSet
 from frahm.errors import Outcome
 from frahm.loads import OperatingRange
 from frahm.response import ResponseCurve
+from frahm.tolerances import AS_LARGE
 
-LARGER = 1.01  # what is larger by less is as large
 _ENDS = ("lower", "upper")
 
 Place = tuple[float, float]  # Omega [rad/s] and the pipe peak of a motion there [m]
@@ -62,7 +62,7 @@ def _at_an_end(
     W, peak = worst
     beyond = [place for place in met if sign * (place[0] - edge) > 0]
     where, larger = max(beyond, key=lambda place: place[1], default=(edge, 0.0))
-    is_larger = larger > LARGER * peak
+    is_larger = larger > AS_LARGE * peak
     sits = abs(W - edge) <= fine * W and not within.closed(end)
     text = f"at {wide.place(where)}, a motion of {larger:.4g} m is larger"
     if not sits:
@@ -81,7 +81,7 @@ def _rarely_reached(
         return []
     at_most = int(np.argmax(np.where(inside, curve.pipe_peak, -1.0)))
     peak = float(curve.pipe_peak[at_most])
-    if not peak > LARGER * worst.pipe_peak:
+    if not peak > AS_LARGE * worst.pipe_peak:
         return []
     return [
         f"A stable response of {peak:.4g} m at {wide.place(float(curve.frequency[at_most]))} is larger; "

@@ -23,6 +23,7 @@ from frahm.errors import Outcome, check_count
 from frahm.harmonic_balance import PeriodicResponse, periodic_responses_of
 from frahm.harmonic_balance.linear import linear_exponents
 from frahm.systems import System, as_system, detuning_of, excitation_frequency
+from frahm.tolerances import ALIKE
 
 if TYPE_CHECKING:
     from frahm.case import Case
@@ -32,7 +33,6 @@ _TIME_CONSTANTS, _MOST_PERIODS = 28.0, 20_000  # of the slowest free vibration u
 _TURNS = 1e-6  # of the excitation frequency: what turns more slowly is no vibration
 MOST_SAMPLES = 1_000_000
 _SCOUTS = 16  # of the sample, settled first: attractors they find are known to the rest
-_ALIKE = 0.02  # of the peak: clouds that differ less are one modulated response, whatever its beat is locked to
 _WATCH = 100  # periods over which an unsettled motion is watched
 
 
@@ -206,7 +206,7 @@ def _alike(a: Cloud, b: Cloud) -> bool:
     """Whether peaks and rms agree within 2 % of the peak, or within their scatter between windows."""
     (mean_a, spread_a), (mean_b, spread_b) = ((np.mean(c.seen, axis=0), np.std(c.seen, axis=0, ddof=1)) for c in (a, b))
     peaks = np.repeat(np.maximum(mean_a, mean_b)[[0, 3]], 3)
-    return bool(np.all(np.abs(mean_a - mean_b) <= np.maximum(_ALIKE * peaks, spread_a + spread_b)))
+    return bool(np.all(np.abs(mean_a - mean_b) <= np.maximum(ALIKE * peaks, spread_a + spread_b)))
 
 
 def _where(strobe: Stroboscope) -> dict[str, Any]:

@@ -10,11 +10,11 @@ import numpy as np
 
 from frahm.arrays import Floats, labelled
 from frahm.attractors.worst import WorstCase
+from frahm.tolerances import AS_LARGE
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_SAME = 1.01  # motions nearer than this are one: the response, without the error between two points of the curve
 _PEAKS = {"pipe": "pipe displacement", "relative": "displacement of the first absorber relative to the pipe"}
 
 
@@ -60,7 +60,7 @@ def _of_part(part: WorstCase, number: int) -> dict[str, Floats]:
     for which in _PEAKS:
         found = _searched(part, f"{which}_peak", W)
         periodic = _largest_stable(part, getattr(curve, f"{which}_peak"), W)
-        exact = np.isfinite(found) & ~((found > _SAME * periodic) | (periodic > _SAME * found))
+        exact = np.isfinite(found) & ~((found > AS_LARGE * periodic) | (periodic > AS_LARGE * found))
         columns[f"{which}_peak"] = np.where(exact, found, np.where(np.isfinite(periodic), periodic, found))
         columns[f"searched_{which}_peak"] = found
     known = np.isfinite(columns["pipe_peak"])

@@ -288,8 +288,8 @@ def driven_at(system: System, within: OperatingRange) -> Callable[[float], Syste
 
 def _curve(system: System, within: OperatingRange) -> tuple[ResponseCurve, Callable[[float], list[PeriodicResponse]]]:
     """The exact response over a range, and the periodic responses at a frequency of it; branches are followed once."""
-    curve, search, tracks = curve_and_branches(system, *within.frequency, None, within.factor)
-    return curve, lambda W: [] if search is None else responses_on(search, tracks, W)
+    curve, search, branches = curve_and_branches(system, *within.frequency, None, within.factor)
+    return curve, lambda W: [] if search is None else responses_on(search, branches, W)
 
 
 def _region_of(system: System, curve: ResponseCurve, lo: float, hi: float) -> Region:

@@ -8,8 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from frahm.arrays import Floats
-
-_LARGER = 1.01  # what is larger by less is as large
+from frahm.tolerances import AS_LARGE
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +138,7 @@ def joined(motions: Sequence[WorstMotion]) -> WorstMotion:
                 doubt
                 for motion in motions
                 for doubt in motion.unverified
-                if not _LARGER * motion.beyond.get(doubt, math.inf) < largest.pipe_peak
+                if not AS_LARGE * motion.beyond.get(doubt, math.inf) < largest.pipe_peak
             )
         ),
     )

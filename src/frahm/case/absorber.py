@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from pydantic import Field, ValidationInfo, field_validator
 
 from frahm.case.quantities import Coefficients, Label, Quantity, QuantityOrNothing, refusal
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 
 
-class CubicLaw(Section):
+class CubicLaw(CaseSection):
     """A nonlinear energy sink: force = stiffness z^3 + damping z'."""
 
     kind: Literal["cubic"] = Field(default="cubic", title="Kind of force law", description="Purely cubic spring.")
@@ -24,7 +24,7 @@ class CubicLaw(Section):
     )
 
 
-class LinearLaw(Section):
+class LinearLaw(CaseSection):
     """A tuned mass damper: force = stiffness z + damping z'."""
 
     kind: Literal["linear"] = Field(default="linear", title="Kind of force law", description="Linear spring.")
@@ -38,7 +38,7 @@ class LinearLaw(Section):
     )
 
 
-class PolynomialLaw(Section):
+class PolynomialLaw(CaseSection):
     """A spring with any polynomial characteristic: force = c_1 z + c_2 z^2 + ... + damping z'."""
 
     kind: Literal["polynomial"] = Field(
@@ -54,7 +54,7 @@ class PolynomialLaw(Section):
     )
 
 
-class TransverseSpringsLaw(Section):
+class TransverseSpringsLaw(CaseSection):
     """Two equal springs at right angles to the motion, exact geometry: a cubic spring as it is built."""
 
     kind: Literal["transverse-springs"] = Field(
@@ -88,7 +88,7 @@ class TransverseSpringsLaw(Section):
         return value
 
 
-class BistableLaw(Section):
+class BistableLaw(CaseSection):
     """Two wells: force = -negative_stiffness z + stiffness z^3 + damping z'."""
 
     kind: Literal["bistable"] = Field(
@@ -108,7 +108,7 @@ class BistableLaw(Section):
     )
 
 
-class EndStops(Section):
+class EndStops(CaseSection):
     """Elastic stops that end the travel of an absorber on both sides."""
 
     gap: Annotated[float, Quantity("m", "z_s", above=0)] = Field(
@@ -124,7 +124,7 @@ class EndStops(Section):
     )
 
 
-class DryFriction(Section):
+class DryFriction(CaseSection):
     """Coulomb friction of an absorber's guide, regularised as force tanh(velocity/speed)."""
 
     force: Annotated[float, Quantity("N", "F_f", above=0)] = Field(
@@ -139,7 +139,7 @@ class DryFriction(Section):
 Law = Annotated[CubicLaw | LinearLaw | PolynomialLaw | TransverseSpringsLaw | BistableLaw, Field(discriminator="kind")]
 
 
-class Absorber(Section):
+class Absorber(CaseSection):
     """A mass on the pipe, held by a spring and a damper."""
 
     name: Annotated[str, Label(shortest=1, longest=60)] = Field(

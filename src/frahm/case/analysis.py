@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from frahm.case.quantities import Choice, Count, Range, refusal
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 
 
-class Analysis(Section):
+class Analysis(CaseSection):
     """What is computed for the case."""
 
     wind: Annotated[tuple[float, float] | None, Range("m/s", "U", above=0)] = Field(

@@ -22,7 +22,7 @@ from frahm.case.limits import Limits
 from frahm.case.pipe import AnyPipe
 from frahm.case.problems import parameter_error
 from frahm.case.quantities import Label, refusal
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 from frahm.case.typed import typed_texts, unchanged_texts
 from frahm.case.wind import Wind
 from frahm.errors import ParameterError, check_count, check_number, nearest
@@ -30,7 +30,7 @@ from frahm.errors import ParameterError, check_count, check_number, nearest
 _MOVES = 1e-6  # of the largest displacement of a mode
 
 
-class Case(Section):
+class Case(CaseSection):
     """A pipe in the wind, its absorbers, and what is to be computed. SI units, frequencies in rad/s.
 
     Raises

@@ -8,11 +8,10 @@ from typing import Annotated, Any
 from pydantic import Field, field_validator, model_validator
 
 from frahm.case.quantities import Quantity, refusal
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 from frahm.case.table_files import Column, table_rows
+from frahm.readable import DAY
 
-DAY = 86_400.0  # [s]
-YEAR = 365.25 * DAY  # [s]
 SUM_TOLERANCE = 1e-3  # a printed table of a few hundred rounded probabilities misses one by less
 _COLUMNS = (
     Column("speed", "m/s"),
@@ -21,7 +20,7 @@ _COLUMNS = (
 )
 
 
-class Weibull(Section):
+class Weibull(CaseSection):
     """Wind speeds with P(speed > U) = exp[-(U/scale)^shape]."""
 
     scale: Annotated[float, Quantity("m/s", "c", above=0)] = Field(
@@ -32,7 +31,7 @@ class Weibull(Section):
     )
 
 
-class ClimateRow(Section):
+class ClimateRow(CaseSection):
     """One class of wind: its middle speed, the direction it blows from, and how probable it is."""
 
     speed: Annotated[float, Quantity("m/s", "U", at_least=0)] = Field(
@@ -46,7 +45,7 @@ class ClimateRow(Section):
     )
 
 
-class Climate(Section):
+class Climate(CaseSection):
     """How often the wind blows how fast, by a Weibull distribution or by a table, and for how long."""
 
     duration: Annotated[float, Quantity("s", "T", at_least=DAY)] = Field(

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from frahm.case.quantities import Choice, Count, Quantities, Quantity, QuantityOrNothing, Range, refusal
-from frahm.case.section import Section
+from frahm.case.quantities import Choice, Count, Quantity, QuantityList, QuantityOrNothing, Range, refusal
+from frahm.case.section import CaseSection
 from frahm.errors import ParameterError, nearest
 
 FAMILIES = ("sink", "tuned", "mixed")
@@ -69,7 +69,7 @@ class CountOrRange(Count):
 
 
 @dataclass(frozen=True)
-class Shares(Quantities):
+class Shares(QuantityList):
     """Shares of a whole, or one of a few words."""
 
     words: tuple[str, ...] = ()
@@ -102,7 +102,7 @@ _Pair = tuple[float, float]
 _SHARE = Quantity("", at_least=0, at_most=0.5)
 
 
-class Scatter(Section):
+class Scatter(CaseSection):
     """How far what a design meets may be off what it was designed for, as fractions either way."""
 
     pipe_frequency: Annotated[float, _SHARE] = Field(
@@ -129,7 +129,7 @@ class Scatter(Section):
         return tuple(name for name in type(self).model_fields if getattr(self, name) > 0)
 
 
-class Design(Section):
+class Design(CaseSection):
     """What the best absorber is asked for. A value per mass is divided by the mass of the pipe."""
 
     objective: Annotated[Literal["peak", "rms", "expected", "damage"], Choice(OBJECTIVES)] = Field(
@@ -231,14 +231,14 @@ class Design(Section):
     seed: Annotated[int, Count(at_least=0)] = Field(
         default=1, title="Seed", description="Of the samples: the same seed gives the same result."
     )
-    errors: Annotated[tuple[float, ...], Quantities("", "r", at_least=0.5, at_most=1.5, shortest=0, longest=50)] = (
+    errors: Annotated[tuple[float, ...], QuantityList("", "r", at_least=0.5, at_most=1.5, shortest=0, longest=50)] = (
         Field(
             default=(0.85, 0.9, 0.95, 1.0, 1.05, 1.1, 1.15),
             title="Frequencies of the comparison",
             description="Of the pipe over the nominal one: there all devices are compared, not retuned.",
         )
     )
-    margins: Annotated[tuple[float, ...], Quantities("", "margin", at_least=1, at_most=3, shortest=0, longest=20)] = (
+    margins: Annotated[tuple[float, ...], QuantityList("", "margin", at_least=1, at_most=3, shortest=0, longest=20)] = (
         Field(
             default=(1.0, 1.05, 1.1, 1.15, 1.2),
             title="Force margins of the trade-off",

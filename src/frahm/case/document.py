@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from frahm.case.quantities import Door, Label, refusal
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Date(Door):
         return {"anyOf": [{"type": "string", "format": "date"}, {"const": ""}]}
 
 
-class Document(Section):
+class Document(CaseSection):
     """Title block: whose document this is, which revision of it, and who answers for it. All of it may be left out."""
 
     project: Annotated[str, Label()] = Field(default="", title="Project", description="Name of the project.")

@@ -7,13 +7,13 @@ from typing import Annotated, Literal
 from pydantic import Field, field_validator
 
 from frahm.case.quantities import Choice, Count, Quantity, refusal
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 
 SN_CURVE_NAMES = ("B1", "B2", "C", "C1", "C2", "D", "E", "F", "F1", "F3", "G", "W1", "W2", "W3", "T")  # DNV-RP-C203
 _Curve = Literal["B1", "B2", "C", "C1", "C2", "D", "E", "F", "F1", "F3", "G", "W1", "W2", "W3", "T"]
 
 
-class Fatigue(Section):
+class Fatigue(CaseSection):
     """The detail whose fatigue damage is counted, and how its stress follows from the motion of the pipe."""
 
     curve: Annotated[_Curve, Choice(SN_CURVE_NAMES)] = Field(

@@ -7,10 +7,10 @@ from typing import Annotated
 from pydantic import Field
 
 from frahm.case.quantities import Quantity, QuantityOrNothing
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 
 
-class Limits(Section):
+class Limits(CaseSection):
     """What the worst lasting motion must keep; each of them may be left out."""
 
     displacement: Annotated[float | None, QuantityOrNothing("m", "x_max", above=0)] = Field(

@@ -9,15 +9,15 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from frahm.case.mode_file import read_modes
-from frahm.case.quantities import Count, Quantities, Quantity, QuantityOrNothing, refusal
-from frahm.case.section import Section
+from frahm.case.quantities import Count, Quantity, QuantityList, QuantityOrNothing, refusal
+from frahm.case.section import CaseSection
 from frahm.structure import ModalPipe, ShapeTable, modal_pipe
 from frahm.structure.modes import MOST_MODES
 
 _NORM = 1e-3  # how far the largest displacement of a shape may be from 1
 
 
-class TableMode(Section):
+class TableMode(CaseSection):
     """One mode, its shape scaled to a largest displacement of 1."""
 
     mass: Annotated[float, Quantity("kg", "M_k", above=0)] = Field(
@@ -33,15 +33,15 @@ class TableMode(Section):
         title="Generalised lift length",
         description="Modal lift over lift per length: integral of the shape with the sign of the governing one.",
     )
-    displacements: Annotated[tuple[float, ...], Quantities("", "phi_k")] = Field(
+    displacements: Annotated[tuple[float, ...], QuantityList("", "phi_k")] = Field(
         title="Shape", description="Displacement at every section, the largest 1 or -1."
     )
-    stresses: Annotated[tuple[float, ...], Quantities("Pa/m", "sigma_k", shortest=0)] = Field(
+    stresses: Annotated[tuple[float, ...], QuantityList("Pa/m", "sigma_k", shortest=0)] = Field(
         default=(), title="Stresses", description="Bending stress at every section per modal displacement."
     )
 
 
-class ModeTable(Section):
+class ModeTable(CaseSection):
     """The pipe as a table of modes."""
 
     kind: Literal["modes"] = Field(title="Kind of pipe", description="A table of modes, given here or as a CSV file.")
@@ -61,7 +61,7 @@ class ModeTable(Section):
         title="Governing mode",
         description="The mode vortices lock in to, from 1: mass, frequency and detuning of the pipe are this mode's.",
     )
-    sections: Annotated[tuple[float, ...], Quantities("m", "s", at_least=0)] = Field(
+    sections: Annotated[tuple[float, ...], QuantityList("m", "s", at_least=0)] = Field(
         title="Sections",
         description="Positions along the pipe at which the shapes are known: absorbers, stresses, largest motion.",
     )

@@ -10,12 +10,12 @@ from pydantic import Discriminator, Field, Tag
 from frahm.arrays import frozen
 from frahm.case.mode_table import ModeTable
 from frahm.case.quantities import Quantity
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 from frahm.case.tube import Tube
 from frahm.structure import ModalPipe
 
 
-class Pipe(Section):
+class Pipe(CaseSection):
     """The pipe as one mode of vibration."""
 
     is_default_kind: ClassVar[bool] = True

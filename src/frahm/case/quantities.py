@@ -165,7 +165,7 @@ class Range(Quantity):
 
 
 @dataclass(frozen=True)
-class Quantities(Quantity):
+class QuantityList(Quantity):
     """A list of quantities of one kind."""
 
     shortest: int = 1
@@ -180,7 +180,7 @@ class Quantities(Quantity):
         """Values in the SI unit."""
         if not isinstance(value, list | tuple) or not self.shortest <= len(value) <= self.longest:
             raise refusal(self.allowed)
-        return tuple(super(Quantities, self).read(0.0 if _vanishes(item) else item) for item in value)
+        return tuple(super(QuantityList, self).read(0.0 if _vanishes(item) else item) for item in value)
 
     def json_schema(self) -> dict[str, Any]:
         """JSON schema."""

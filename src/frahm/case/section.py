@@ -7,7 +7,7 @@ from typing import ClassVar
 from pydantic import BaseModel, ConfigDict
 
 
-class Section(BaseModel):
+class CaseSection(BaseModel):
     """A frozen part of a case that refuses names it does not know."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)

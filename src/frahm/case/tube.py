@@ -8,17 +8,18 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from frahm.case.quantities import Choice, Count, Quantities, Quantity, refusal
-from frahm.case.section import Section
+from frahm.case.quantities import Choice, Count, Quantity, QuantityList, refusal
+from frahm.case.section import CaseSection
 from frahm.errors import ParameterError
 from frahm.structure import Beam, BeamModes, ModalPipe, PointMass, Support, beam_modes, modal_pipe
 from frahm.structure.modes import MOST_MODES
 
+STEEL_MODULUS, STEEL_DENSITY = 2.06e11, 7850.0  # of structural steel [Pa, kg/m^3]
 SUPPORTS = ("pinned", "clamped", "free", "spring")
 LIFTS = ("uniform", "mode-shape")
 
 
-class TubeSupport(Section):
+class TubeSupport(CaseSection):
     """What holds the tube at one section."""
 
     at: Annotated[float, Quantity("m", "s", at_least=0)] = Field(
@@ -44,7 +45,7 @@ class TubeSupport(Section):
         return translation, math.inf if self.kind == "clamped" else self.rotation
 
 
-class TubePointMass(Section):
+class TubePointMass(CaseSection):
     """A mass at one section of the tube."""
 
     at: Annotated[float, Quantity("m", "s", at_least=0)] = Field(
@@ -55,7 +56,7 @@ class TubePointMass(Section):
     )
 
 
-class Tube(Section):
+class Tube(CaseSection):
     """The pipe as an elastic tube: bending vibration in its exact modes."""
 
     kind: Literal["tube"] = Field(title="Kind of pipe", description="An elastic tube on supports.")
@@ -69,10 +70,14 @@ class Tube(Section):
         title="Length of the tube", description="All spans together; the wind blows along all of it."
     )
     youngs_modulus: Annotated[float, Quantity("Pa", "E", above=0)] = Field(
-        default=2.06e11, title="Young's modulus", description="Of the tube's material; the default is structural steel."
+        default=STEEL_MODULUS,
+        title="Young's modulus",
+        description="Of the tube's material; the default is structural steel.",
     )
     density: Annotated[float, Quantity("kg/m^3", "rho_s", above=0)] = Field(
-        default=7850.0, title="Density of the tube", description="Of its material; the default is structural steel."
+        default=STEEL_DENSITY,
+        title="Density of the tube",
+        description="Of its material; the default is structural steel.",
     )
     contained_mass: Annotated[float, Quantity("kg/m", "m_c", at_least=0)] = Field(
         default=0.0, title="Contained mass", description="Mass per length of what is inside."
@@ -99,7 +104,7 @@ class Tube(Section):
     damping_ratio: Annotated[float, Quantity("", "zeta", at_least=0, below=1)] = Field(
         title="Damping ratio", description="Fraction of critical damping of every mode, or of the governing one."
     )
-    damping_ratios: Annotated[tuple[float, ...], Quantities("", "zeta", at_least=0, below=1, shortest=0)] = Field(
+    damping_ratios: Annotated[tuple[float, ...], QuantityList("", "zeta", at_least=0, below=1, shortest=0)] = Field(
         default=(), title="Damping ratios of all modes", description="One for each mode, in place of the same for all."
     )
     lift: Annotated[Literal["uniform", "mode-shape"], Choice(LIFTS)] = Field(

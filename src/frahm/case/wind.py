@@ -9,15 +9,16 @@ from pydantic import Field
 
 from frahm.case.quantities import Choice, Door, Quantity, Range, refusal
 from frahm.case.reynolds import LIFT, LIFT_CURVES, STROUHAL, STROUHAL_CURVES, Coefficient, reynolds_range
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 from frahm.case.table_files import Column, table_rows
 
+AIR_DENSITY, AIR_VISCOSITY = 1.225, 1.5e-5  # kinematic; at sea level and near 20 degrees Celsius [kg/m^3, m^2/s]
 SPECTRA = ("kaimal", "en1991", "von-karman")
 RECORD_COLUMNS = (Column("time", "s"), Column("speed", "m/s"))
 _MOST_SAMPLES = 5000  # the samples become part of the case, which must stay a file that can be read
 
 
-class Turbulence(Section):
+class Turbulence(CaseSection):
     """Synthetic gusts around the wind speed."""
 
     intensity: Annotated[float, Quantity("", "I_u", at_least=0, at_most=1)] = Field(
@@ -76,7 +77,7 @@ class Record(Door):
         return {"anyOf": [{"type": "array", "items": pair, "maxItems": _MOST_SAMPLES}, {"type": "string"}]}
 
 
-class Wind(Section):
+class Wind(CaseSection):
     """The wind that sheds vortices from the pipe."""
 
     speed: Annotated[float, Quantity("m/s", "U", above=0)] = Field(
@@ -84,12 +85,12 @@ class Wind(Section):
         description="Speed across the pipe.",
     )
     air_density: Annotated[float, Quantity("kg/m^3", "rho_air", above=0)] = Field(
-        default=1.225,
+        default=AIR_DENSITY,
         title="Density of the air",
         description="Density of the fluid that flows around the pipe.",
     )
     viscosity: Annotated[float, Quantity("m^2/s", "nu", above=0)] = Field(
-        default=1.5e-5,
+        default=AIR_VISCOSITY,
         title="Kinematic viscosity of the air",
         description="It makes the Reynolds number U D / nu of the wind speed.",
     )

@@ -26,7 +26,7 @@ class TextError(ValueError):
 
 
 @dataclass
-class _Reader:
+class _Builder:
     """Builds plain data from the nodes of a document, and keeps the line of every path."""
 
     yaml: YAML
@@ -84,7 +84,7 @@ def read_yaml(text: str) -> tuple[Any, dict[str, int]]:
     """
     yaml = _yaml()
     yaml.composer.warn_double_anchors = False  # a later anchor replaces one of the same name, as YAML 1.2 has it
-    reader = _Reader(yaml)
+    reader = _Builder(yaml)
     try:
         root = yaml.compose(text)
         return (None if root is None else reader.build(root)), reader.lines

@@ -46,12 +46,12 @@ def compile_stability() -> None:
     from numba import typeof
 
     from frahm.case import load_case
-    from frahm.harmonic_balance import begin
+    from frahm.harmonic_balance import search_over
     from frahm.harmonic_balance.orbits import describe
     from frahm.systems import build_system
 
     case = load_case(_CASE)
-    search = begin(build_system(case), 0.9 * case.pipe.frequency, 1.1 * case.pipe.frequency, None, None)
+    search = search_over(build_system(case), 0.9 * case.pipe.frequency, 1.1 * case.pipe.frequency, None, None)
     table, numbers, complexes = np.empty((1, 1)), np.empty(1, np.int64), np.empty((1, 1), np.complex128)
     values = (search.problem, search.variation, True, table, numbers, table, complexes)
     describe.compile(tuple(typeof(value) for value in values))

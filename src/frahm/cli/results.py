@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from frahm.analysis import Analysis
+from frahm.analysis import CaseAnalysis
 from frahm.report import check_tables, motion_tables, response_tables
 
 
-def results_text(analysis: Analysis) -> str:
+def results_text(analysis: CaseAnalysis) -> str:
     """Verdict, special points, motions, checks and doubts."""
     return "\n".join(_lines(analysis))
 
 
-def _lines(analysis: Analysis) -> Iterator[str]:
+def _lines(analysis: CaseAnalysis) -> Iterator[str]:
     case = analysis.case
     yield f"{case.name}: {case.title}" if case.title else case.name
     yield ""

@@ -15,7 +15,7 @@ from frahm.cli.notes import say_notes
 from frahm.cli.terminal import say
 
 if TYPE_CHECKING:
-    from frahm.analysis import Analysis
+    from frahm.analysis import CaseAnalysis
 
 FolderArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder that `frahm run` wrote.")]
 
@@ -107,7 +107,7 @@ def warmup() -> None:
     typer.echo(f"The kernels are compiled and stored; this took {time.perf_counter() - start:.1f} s.")
 
 
-def _conclude(analysis: Analysis, folder: Path) -> None:
+def _conclude(analysis: CaseAnalysis, folder: Path) -> None:
     """Say what came out, where it is, what is doubtful; end with the exit code for it."""
     typer.echo(analysis.verdict)
     if analysis.interrupted:

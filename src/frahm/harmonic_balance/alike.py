@@ -12,8 +12,10 @@ import numpy as np
 from frahm.absorbers import Law
 from frahm.absorbers.packed import pack_laws
 from frahm.arrays import Complexes, Floats
+from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.condensation import unknowns
-from frahm.harmonic_balance.search import Search, Track, away_from_turns
+from frahm.harmonic_balance.following import far_from_folds
+from frahm.harmonic_balance.search import Search
 from frahm.harmonic_balance.seeds import Seed
 from frahm.systems import Element, System
 
@@ -33,18 +35,18 @@ def moving_alike(system: System) -> System | None:
     return System(M, C, K, P.T @ system.forcing, elements, P.T @ system.output, name=system.name)
 
 
-def seeds_alike(search: Search, alike: Search, tracks: list[Track]) -> list[Seed]:
+def seeds_alike(search: Search, alike: Search, branches: list[SolutionBranch]) -> list[Seed]:
     """Starts in the whole system from the branches of its motions alike, one of each."""
-    return [_seed(search, alike, track) for track in tracks]
+    return [_seed(search, alike, branch) for branch in branches]
 
 
-def _seed(search: Search, alike: Search, track: Track) -> Seed:
-    at = away_from_turns(alike, track)
-    H, r = int(track.Hs[at]), alike.problem.M11.shape[0]
-    X = track.ys[at, : unknowns(alike.problem, H, track.odd)].reshape(-1, r, 2)
-    first, step = (1, 2) if track.odd else (0, 1)
+def _seed(search: Search, alike: Search, branch: SolutionBranch) -> Seed:
+    at = far_from_folds(alike, branch)
+    point, r = branch.points[at], alike.problem.M11.shape[0]
+    X = point.y[: unknowns(alike.problem, point.H, branch.odd)].reshape(-1, r, 2)
+    first, step = (1, 2) if branch.odd else (0, 1)
     return Seed(
-        float(track.frequency[at]),
+        float(branch.points.frequency[at]),
         {first + step * m: _whole(search, alike, u[:, 0] + 1j * u[:, 1]) for m, u in enumerate(X)},
     )
 

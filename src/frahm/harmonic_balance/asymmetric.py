@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import scipy.linalg
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance.completing import complete, described
+from frahm.harmonic_balance.branch import Bifurcation, Point, SolutionBranch, described, located, points_of
 from frahm.harmonic_balance.condensation import unknowns
-from frahm.harmonic_balance.events import LocatedEvent, Point
-from frahm.harmonic_balance.following import followed, lies_on, track_of
+from frahm.harmonic_balance.following import followed, lies_on
 from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian, sample_count
 from frahm.harmonic_balance.newton import correct
-from frahm.harmonic_balance.search import Search, Track
+from frahm.harmonic_balance.search import Search
 from frahm.harmonic_balance.seeds import Seed
+from frahm.harmonic_balance.stability import analyse_stability
 from frahm.harmonic_balance.starts import solve_seed
 
 _REACH = 2.0  # steps of a branch within which its end lies of the point where it is born
@@ -26,110 +28,99 @@ _TILT = 1e-14  # of a singular matrix, relative, so that it can be factorised
 _ALL_BUT_SYMMETRIC = 0.05  # even part at an end over that of its neighbour
 
 
-def asymmetric_branches(search: Search, parent: Track, known: list[Track]) -> list[Track]:
+def asymmetric_branches(search: Search, parent: SolutionBranch, known: list[SolutionBranch]) -> list[SolutionBranch]:
     """Branches with even harmonics that leave an odd branch where it loses its symmetry.
 
     One of each mirrored pair is followed, between the points at which it meets odd branches.
     """
     if not parent.odd:
         return []
-    tracks: list[Track] = []
-    own = zip(parent.events, parent.event_points, strict=True)
-    births = [(event, point) for event, point in own if event.kind == "branch-point" and point is not None]
-    for event, point in births + parent.births:
-        ends = [c for t in known + tracks if not t.odd for c in (t.columns[0], t.columns[-1])]
+    branches: list[SolutionBranch] = []
+    for event, point in located([*parent.bifurcations, *parent.outside], "branch-point"):
+        asymmetric = [branch for branch in known + branches if not branch.odd]
+        ends = [branch.points.columns[i] for branch in asymmetric for i in (0, -1)]
         if any(np.allclose(c[[0, 4]], event.columns[[0, 4]], rtol=_SAME) for c in ends):
             continue
-        start = None if search.budget.reached else _asymmetric_start(search, *point)
+        start = None if search.budget.reached else _asymmetric_start(search, point)
         if start is None:
             continue
-        track = _half_of_pair(search, followed(search, False, *start))
-        track.parent = parent
-        if complete(search, track) and not any(_is_same(search, track, t) for t in known + tracks if not t.odd):
-            _begin_at_births(search, track, [t for t in known if t.odd])
-            tracks.append(track)
-    return tracks
+        branch = _half_of_pair(search, followed(search, False, *start))
+        branch.parent = parent
+        if analyse_stability(search, branch) and not any(_is_same(search, branch, other) for other in asymmetric):
+            _extend_to_branch_points(search, branch, [other for other in known if other.odd])
+            branches.append(branch)
+    return branches
 
 
-def _begin_at_births(search: Search, track: Track, odd: list[Track]) -> None:
+def _extend_to_branch_points(search: Search, branch: SolutionBranch, odd: list[SolutionBranch]) -> None:
     """Put the points at which the symmetry is lost on the ends of a branch that leaves there."""
-    births = [
-        (event, point) for t in odd for event, point in zip(t.events, t.event_points, strict=True)
-        if event.kind == "branch-point" and point is not None
-    ]  # fmt: skip
-    places = [_scaled(search, y, H, True) for _, (y, _, H) in births]
+    births = [birth for other in odd for birth in located(other.bifurcations, "branch-point")]
+    places = [_scaled(search, _with_even(search, point)) for _, point in births]
     for end, beside in ((0, 1), (-1, -2)):
-        a, b = (_scaled(search, track.ys[i], int(track.Hs[i]), False) for i in (end, beside))
+        a, b = (_scaled(search, branch.points[i]) for i in (end, beside))
         away = [float(np.linalg.norm(place - a)) for place in places]
         if away and min(away) < _REACH * float(np.linalg.norm(b - a)):
-            event, point = births[int(np.argmin(away))]
-            _put_at_end(search, track, end, point, event)
+            _put_at_end(search, branch, end, *births[int(np.argmin(away))])
 
 
-def _put_at_end(search: Search, track: Track, end: int, birth: Point, event: LocatedEvent) -> None:
+def _put_at_end(search: Search, branch: SolutionBranch, end: int, event: Bifurcation, birth: Point) -> None:
     """Add a symmetric point to an end of an asymmetric branch, which leaves it along its even part."""
-    y, _, H = birth
-    r, size = search.problem.M11.shape[0], search.size(False)
-    n = unknowns(search.problem, H, False)
-    point, tangent = np.zeros(size), np.zeros(size)
-    point[: n + 1] = _with_even(search, y, H)
-    even = track.ys[end, :n].copy().reshape(-1, 2 * r)
+    tangent, n = np.zeros(search.size(False)), unknowns(search.problem, birth.H, False)
+    even = branch.points.ys[end, :n].copy().reshape(-1, 2 * search.problem.M11.shape[0])
     even[1::2] = 0.0
     tangent[:n] = even.ravel() / np.linalg.norm(even) * (1.0 if end == 0 else -1.0)
-    at = 0 if end == 0 else len(track.Hs)
-    multipliers = described(search, False, point[None], np.array([H]))[1][0]
-    track.ys, track.ts = np.insert(track.ys, at, point, axis=0), np.insert(track.ts, at, tangent, axis=0)
-    track.Hs = np.insert(track.Hs, at, H)
-    track.truncations = np.insert(track.truncations, at, track.truncations[end])
-    track.columns = np.insert(track.columns, at, event.columns, axis=0)
-    track.multipliers = np.insert(track.multipliers, at, multipliers, axis=0)
+    point = replace(_with_even(search, birth), t=tangent)
+    new = described(search, False, points_of(search, False, [point], branch.points.truncations[[end]]))
+    new = replace(new, columns=event.columns[None])  # the same numbers as on the branch that it leaves
+    branch.points = branch.points.insert([0 if end == 0 else len(branch.points)], new)
 
 
-def _with_even(search: Search, y: Floats, H: int) -> Floats:
+def _with_even(search: Search, point: Point) -> Point:
     """A point with odd harmonics only, as one with all harmonics."""
-    r = search.problem.M11.shape[0]
+    r, H = search.problem.M11.shape[0], point.H
     odd_n, n = unknowns(search.problem, H, True), unknowns(search.problem, H, False)
-    full = np.zeros(n + 1)
-    for m in range(odd_n // (2 * r)):
-        full[2 * r * (2 * m + 1) : 2 * r * (2 * m + 2)] = y[2 * r * m : 2 * r * (m + 1)]
-    full[n] = y[odd_n]
-    return full
+    y, t = np.zeros(search.size(False)), np.zeros(search.size(False))
+    for full, part in ((y, point.y), (t, point.t)):
+        full[:n].reshape(-1, 2 * r)[1::2] = part[:odd_n].reshape(-1, 2 * r)
+        full[n] = part[odd_n]
+    return Point(y, t, H)
 
 
-def _scaled(search: Search, y: Floats, H: int, odd: bool) -> Floats:
+def _scaled(search: Search, point: Point) -> Floats:
     """A point with all harmonics and Omega in the scales of the search, as long as any."""
-    full = _with_even(search, y, H) if odd else y
-    n, scaled = unknowns(search.problem, H, False), np.zeros(search.size(False))
-    scaled[:n], scaled[-1] = full[:n] / search.x_scale, full[n] / search.w_scale
-    return scaled
+    y = point.with_unknowns(search.problem, False, search.size(False) - 1)
+    y[:-1] /= search.x_scale
+    y[-1] /= search.w_scale
+    return y
 
 
-def buckled_branches(search: Search, seeds: list[Seed], known: list[Track]) -> list[Track]:
+def buckled_branches(search: Search, seeds: list[Seed], known: list[SolutionBranch]) -> list[SolutionBranch]:
     """Branches of an odd system about another mean than 0 that no loss of symmetry in the window has led to.
 
     One of each mirrored pair is followed.
     """
-    tracks: list[Track] = []
+    branches: list[SolutionBranch] = []
     for seed in seeds:
         start = None if search.budget.reached else solve_seed(search, seed, False)
         if start is None or np.linalg.norm(_even_part(search, *start)) < _SYMMETRIC * search.x_scale:
             continue
-        others = [track for track in known + tracks if not track.odd]
-        if any(meets(search, track, *start) for track in others):
+        others = [branch for branch in known + branches if not branch.odd]
+        if any(lies_on_up_to_symmetry(search, branch, *start) for branch in others):
             continue
-        track = _half_of_pair(search, followed(search, False, *start))
-        if complete(search, track):
-            tracks.append(track)
-    return tracks
+        branch = _half_of_pair(search, followed(search, False, *start))
+        if analyse_stability(search, branch):
+            branches.append(branch)
+    return branches
 
 
-def _is_same(search: Search, track: Track, other: Track) -> bool:
+def _is_same(search: Search, branch: SolutionBranch, other: SolutionBranch) -> bool:
     """Whether two asymmetric branches are one, or mirror images of one another, judged where the first is least odd."""
-    i = int(np.argmax([np.linalg.norm(_even_part(search, y, H)) for y, H in zip(track.ys, track.Hs, strict=True)]))
-    return meets(search, other, track.ys[i], int(track.Hs[i]))
+    points = branch.points
+    i = int(np.argmax([np.linalg.norm(_even_part(search, y, H)) for y, H in zip(points.ys, points.Hs, strict=True)]))
+    return lies_on_up_to_symmetry(search, other, points.ys[i], int(points.Hs[i]))
 
 
-def meets(search: Search, other: Track, y: Floats, H: int) -> bool:
+def lies_on_up_to_symmetry(search: Search, other: SolutionBranch, y: Floats, H: int) -> bool:
     """Whether a solution or its mirror image lies on an asymmetric branch."""
     pb, r = search.problem, search.problem.M11.shape[0]
     mirrored = y.copy()
@@ -137,11 +128,10 @@ def meets(search: Search, other: Track, y: Floats, H: int) -> bool:
     return lies_on(search, other, y, H) or lies_on(search, other, mirrored, H)
 
 
-def _asymmetric_start(search: Search, y: Floats, _: Floats, H: int) -> tuple[Floats, int] | None:
+def _asymmetric_start(search: Search, point: Point) -> tuple[Floats, int] | None:
     """A point beside a loss of symmetry, off along the even null vector of the full Jacobian."""
-    pb = search.problem
-    full, n = np.zeros(search.size(False)), unknowns(pb, H, False)
-    full[: n + 1] = _with_even(search, y, H)
+    pb, H, full = search.problem, point.H, _with_even(search, point).y
+    n = unknowns(pb, H, False)
     R, J, A = np.empty(n + 1), np.empty((n + 1, n + 1)), np.empty((n + 1, n + 1))
     tables = fourier_tables(H, False, sample_count(pb, H, False))
     residual_and_jacobian(pb, H, False, full[n], full, *tables, R, J)
@@ -176,9 +166,9 @@ def _even_part(search: Search, y: Floats, H: int) -> Floats:
     return y[:n].reshape(-1, 2 * r)[::2].ravel()
 
 
-def _half_of_pair(search: Search, track: Track) -> Track:
+def _half_of_pair(search: Search, branch: SolutionBranch) -> SolutionBranch:
     """Cut an asymmetric branch where it passes through a symmetric orbit into its mirror image."""
-    parts = [_even_part(search, y, H) for y, H in zip(track.ys, track.Hs, strict=True)]
+    parts = [_even_part(search, y, H) for y, H in zip(branch.points.ys, branch.points.Hs, strict=True)]
     flips = [
         i for i in range(len(parts) - 1)
         if float(np.dot(*(p[: min(parts[i].size, parts[i + 1].size)] for p in parts[i : i + 2]))) < 0
@@ -186,17 +176,16 @@ def _half_of_pair(search: Search, track: Track) -> Track:
     sizes = np.array([np.linalg.norm(p) for p in parts])
     if not flips:
         keep = np.arange(len(parts))
-    elif track.closed:
+    elif branch.closed:
         order = np.concatenate([np.arange(flips[0] + 1, len(parts) - 1), np.arange(flips[0] + 1)])
         keep = order[: ((flips[1] if len(flips) > 1 else flips[0]) - flips[0]) or len(order)]
     else:
         start = int(np.argmax(sizes))
         low = max([i + 1 for i in flips if i < start], default=0)
         keep = np.arange(low, min([i + 1 for i in flips if i >= start], default=len(parts)))
-    if flips or not track.closed:  # an end that is all but symmetric lies on the point where the branch was born
+    if flips or not branch.closed:  # an end that is all but symmetric lies on the point where the branch was born
         keep = keep[int(sizes[keep[0]] < _ALL_BUT_SYMMETRIC * sizes[keep[1]]) :] if len(keep) > 2 else keep
         keep = keep[: -1 if sizes[keep[-1]] < _ALL_BUT_SYMMETRIC * sizes[keep[-2]] else None] if len(keep) > 2 else keep
     if len(keep) == len(parts):
-        return track
-    part = [track.ys[keep], track.ts[keep], track.Hs[keep], track.truncations[keep]]
-    return track_of(search, False, [tuple(part)], False, track.endings)
+        return branch
+    return SolutionBranch(False, branch.points.take(keep), False, branch.endings)

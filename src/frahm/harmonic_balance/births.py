@@ -20,6 +20,7 @@ from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian
 from frahm.harmonic_balance.search import Search
 from frahm.harmonic_balance.seeds import Extreme, Seed
 from frahm.harmonic_balance.starts import starts_of
+from frahm.tolerances import TINY
 
 MARGIN = 1e-6  # of the force: nearer to a birth it is not decided on which side of it a system lies
 _STEPS = np.array([3e-3, 3e-4])  # of ln a and of Omega, over which slopes are first compared
@@ -32,7 +33,6 @@ _FIRST_HARMONICS = 5
 _MET = 1e-3  # share of the way to lambda = 1 at which a ring counts as met
 _STATIONARY = 1e-3  # change of ln lambda^2 by the next step, in units of the margin, at which lambda is stationary
 _CAUTIOUS = 0.2  # share of `_CLOSE` by which lambda may change in one step, so that an extreme is not passed over
-_TINY = 1e-300  # keeps a quotient finite
 LOOKED_AHEAD = 1.35  # factor on the force; first-harmonic extremes are known a little farther
 _ENOUGH = 1e-8  # truncation: lambda is then known far better than the margin
 
@@ -161,7 +161,7 @@ def _downhill(search: Search, start: Extreme, place: _Place) -> tuple[_Place, bo
     way = -start.sign * math.copysign(1.0, place.slopes[1])
     share = 1.0
     for _ in range(2 * _ITERATIONS):
-        length = share * min(_CAUTIOUS * _CLOSE / max(abs(float(place.slopes[1])), _TINY), float(_LONGEST[1]))
+        length = share * min(_CAUTIOUS * _CLOSE / max(abs(float(place.slopes[1])), TINY), float(_LONGEST[1]))
         there = _with(search, start, place, np.array([0.0, way * length]))
         there, gone = (None, False) if there is None else _turn_near(search, start, there)
         if there is None:

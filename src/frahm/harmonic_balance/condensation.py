@@ -27,7 +27,7 @@ from frahm.systems import Derivative, System
 _PARALLEL = 1e-12  # sine of the angle between directions that are parallel but for rounding
 
 
-class Problem(NamedTuple):
+class CondensedSystem(NamedTuple):
     """Arrays of the condensed problem for the compiled kernels.
 
     r relative coordinates, E nonlinear elements, p poles, n coordinates; rows 0 and 1 of the outputs are the pipe
@@ -57,12 +57,12 @@ class Problem(NamedTuple):
     odd: bool  # whether every law is odd, so that odd harmonics form a closed set
 
 
-def unknowns(problem: Problem, H: Any, odd: bool) -> Any:
+def unknowns(problem: CondensedSystem, H: Any, odd: bool) -> Any:
     """Length of the unknown vector with harmonics up to H (a number or an array), for callers outside compiled code."""
     return 2 * problem.M11.shape[0] * ((H + 1) // 2 if odd else H + 1)
 
 
-def condense(system: System, forcing: Floats | None = None) -> Problem:
+def condense(system: System, forcing: Floats | None = None) -> CondensedSystem:
     """Condense a system with at least one nonlinear element onto the elements' coordinates.
 
     Raises
@@ -85,7 +85,7 @@ def condense(system: System, forcing: Floats | None = None) -> Problem:
     nonlinear = [element.law.without_linear_part() for element in active]
     codes, table = pack_laws(nonlinear)
     M11, C11, K11 = (np.ascontiguousarray(block[:r, :r]) for block in blocks)
-    return Problem(
+    return CondensedSystem(
         M11=M11, C11=C11, K11=K11, poles=poles, a2=a2, a1=a1, a0=a0, b2=b2, b1=b1, b0=b0,
         force_u=f[:r].astype(complex),
         force_y=L @ f[r:],
@@ -101,13 +101,13 @@ def condense(system: System, forcing: Floats | None = None) -> Problem:
     )  # fmt: skip
 
 
-def stiffness_at(pb: Problem, k: int, W: float) -> tuple[Complexes, Complexes]:
+def stiffness_at(pb: CondensedSystem, k: int, W: float) -> tuple[Complexes, Complexes]:
     """S (r, r) [N/m] and condensed force (r,) [N] at harmonic k of Omega = W [rad/s]."""
     S, force = stiffnesses(pb, np.array([1j * k * W]))
     return S[0], force[0]
 
 
-def stiffness_over(pb: Problem, k: int, W: Floats) -> tuple[Complexes, Complexes]:
+def stiffness_over(pb: CondensedSystem, k: int, W: Floats) -> tuple[Complexes, Complexes]:
     """S (N, r, r) [N/m] and condensed force (N, r) [N] at harmonic k of Omega = W (N,) [rad/s]."""
     S, force = stiffnesses(pb, 1j * k * W)
     return S, force

@@ -16,7 +16,7 @@ import numpy as np
 from frahm.absorbers.packed import law_force
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import Problem
+from frahm.harmonic_balance.condensation import CondensedSystem
 
 PER_DECADE = 100  # amplitudes
 _MEANS = 121
@@ -27,7 +27,7 @@ _NEAR = 0.15  # imbalance per force that still counts as a near miss
 
 
 @dataclass(frozen=True)
-class Table:
+class AmplitudeTable:
     """Amplitudes a and means m (rows,) of u that balance the mean force, and the springs' equivalent stiffness N.
 
     `links` (pairs, 2) joins rows that follow each other on a curve m(a).
@@ -38,7 +38,7 @@ class Table:
     stiffness: Floats
     links: np.ndarray
 
-    def roots(self, pb: Problem, W: float, S: complex, F: complex) -> list[tuple[complex, complex]]:
+    def roots(self, pb: CondensedSystem, W: float, S: complex, F: complex) -> list[tuple[complex, complex]]:
         """Mean and first harmonic of u at every first-harmonic solution seen, and at near misses."""
         a = self.amplitude
         N = self.stiffness.astype(complex)
@@ -77,12 +77,14 @@ class Table:
         return list(zip(m.astype(complex).tolist(), u.tolist(), strict=True))
 
 
-def amplitude_table(pb: Problem, rest: float, linear: Floats, damped: Floats, symmetric: bool) -> Table | None:
+def amplitude_table(
+    pb: CondensedSystem, rest: float, linear: Floats, damped: Floats, symmetric: bool
+) -> AmplitudeTable | None:
     """Table of one coordinate u for a window of frequencies.
 
     Parameters
     ----------
-    pb : Problem
+    pb : CondensedSystem
     rest : float
         Host's stiffness S at harmonic 0 [N/m].
     linear, damped : ndarray
@@ -92,7 +94,7 @@ def amplitude_table(pb: Problem, rest: float, linear: Floats, damped: Floats, sy
 
     Returns
     -------
-    Table or None
+    AmplitudeTable or None
         None if there is no row.
     """
     edge = outer_balances(pb, rest)
@@ -108,7 +110,7 @@ def amplitude_table(pb: Problem, rest: float, linear: Floats, damped: Floats, sy
     if count == 0:
         return None
     a, m, N = (np.ascontiguousarray(column) for column in rows[:count].T)
-    return Table(a, m, N, _links(owner[:count], a, m))
+    return AmplitudeTable(a, m, N, _links(owner[:count], a, m))
 
 
 def _links(owner: np.ndarray, a: Floats, m: Floats) -> np.ndarray:

@@ -9,8 +9,8 @@ import numpy as np
 
 from frahm.arrays import Complexes, Floats
 from frahm.continuation import CurvePoint, between_points
-from frahm.harmonic_balance.condensation import Problem
-from frahm.harmonic_balance.equations import Equations, Orbit
+from frahm.harmonic_balance.condensation import CondensedSystem
+from frahm.harmonic_balance.equations import Equations, Linearisation
 from frahm.harmonic_balance.found import Found
 from frahm.harmonic_balance.loci import loci_with_frequency, orbit_peaks
 from frahm.systems import System
@@ -60,7 +60,7 @@ def detached_events(
             cusp = a.tangent[at - 1] * b.tangent[at - 1] < 0  # both axes turn back: two saddle-nodes meet on one curve
             if a.tangent[at] * b.tangent[at] >= 0 or a.tangent @ b.tangent < 0 or cusp:
                 continue
-            point = between_points(equations.residual, a, b, lambda p, at=at: float(p.tangent[at]), _LOCATED)  # type: ignore[misc, attr-defined]
+            point = between_points(equations.residual, a, b, lambda p, at=at: float(p.tangent[at]), _LOCATED)  # type: ignore[misc]
             if point is None:
                 continue
             event = _event(equations, point, parameter, 1 if a.tangent[at] < 0 else -1)
@@ -89,7 +89,7 @@ def _event(equations: Equations, point: CurvePoint, parameter: str, direction: i
     )
 
 
-def _quadratic_form(equations: Equations, orbit: Orbit) -> float:
+def _quadratic_form(equations: Equations, orbit: Linearisation) -> float:
     """Determinant of the second-order form on the two directions in which the equations are singular.
 
     Where the parameter is extreme along a saddle-node curve, (X, Omega) has two null directions; the solutions nearby
@@ -106,7 +106,7 @@ def _quadratic_form(equations: Equations, orbit: Orbit) -> float:
     return float(vv * uu - vu * vu)
 
 
-def _second_by_frequency(equations: Equations, orbit: Orbit) -> Floats:
+def _second_by_frequency(equations: Equations, orbit: Linearisation) -> Floats:
     """Second derivative (n,) of the residual by Omega."""
     r = orbit.problem.M11.shape[0]
     out = np.zeros(equations.n)
@@ -120,7 +120,7 @@ def _second_by_frequency(equations: Equations, orbit: Orbit) -> Floats:
     return out
 
 
-def _second_derivatives(pb: Problem, s: complex) -> tuple[Complexes, Complexes]:
+def _second_derivatives(pb: CondensedSystem, s: complex) -> tuple[Complexes, Complexes]:
     """d2S/ds2 (r, r) and d2F/ds2 (r,) of the condensed stiffness and force."""
     g = 1.0 / (s - pb.poles)
     a, da, dda = s * s * pb.a2 + s * pb.a1 + pb.a0, 2 * s * pb.a2 + pb.a1, 2 * pb.a2

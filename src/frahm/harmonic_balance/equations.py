@@ -10,6 +10,7 @@ Minimally extended (bordered) systems: Govaerts (2000), doi 10.1137/1.9780898719
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,7 +19,7 @@ from frahm.absorbers import Law
 from frahm.absorbers.packed import law_curvatures, law_force_and_slopes
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import CondensedChange, Problem, condense, coordinates, unknowns
+from frahm.harmonic_balance.condensation import CondensedChange, CondensedSystem, condense, coordinates, unknowns
 from frahm.harmonic_balance.kernels import (
     add_rates,
     add_slopes,
@@ -84,10 +85,11 @@ def _matrix_of_slopes(pb, H, odd, W, slopes, by_velocity, J):
 
 
 @dataclass
-class Equations:
+class Equations(ABC):
     """What both kinds of points share: residual and Jacobian of the orbit in (X, q1, q2).
 
-    Unknowns are scaled: X by `x_scale`, the axes by `scales`. `frequency` is Omega [rad/s] where it is no axis.
+    Unknowns are scaled: X by `x_scale`, the axes by `scales`. `frequency` is Omega [rad/s] where it is no axis. `start`
+    is a scaled point near the curve, from which the bordering vectors are: they stay, so that g has one sign.
     """
 
     system: System
@@ -97,7 +99,8 @@ class Equations:
     odd: bool
     x_scale: float
     scales: tuple[float, float]
-    problem: Problem = field(init=False)
+    start: Floats
+    problem: CondensedSystem = field(init=False)
     tables: tuple[Floats, Floats] = field(init=False)
     T: Floats = field(init=False)
 
@@ -105,6 +108,10 @@ class Equations:
         self.problem = condense(self.system)
         self.T = coordinates(self.system)[0]
         self.tables = fourier_tables(self.H, self.odd, sample_count(self.problem, self.H, self.odd))
+
+    @abstractmethod
+    def residual(self, y: Floats) -> tuple[Floats, Floats]:
+        """Residual and Jacobian in scaled unknowns; NaN where an axis is not positive and there is no system."""
 
     @property
     def n(self) -> int:
@@ -131,7 +138,7 @@ class Equations:
         values.pop(FREQUENCY, None)
         return with_parameters(self.system, **values)
 
-    def orbit(self, y: Floats) -> Orbit:
+    def orbit(self, y: Floats) -> Linearisation:
         """Residual, Jacobian and derivatives by both axes at a scaled point."""
         system, W, X = self.system_at(y), self.frequency_at(y), np.ascontiguousarray(y[: self.n] * self.x_scale)
         pb = condense(system)
@@ -151,23 +158,25 @@ class Equations:
                 rate = rate + self.projected(pb, of_first(derivative.law.force(z[0]), z))
             changes.append(Change(self, pb, W, rate, condensed, derivative.law))
         along = z, w, derivatives
-        return Orbit(self, pb, W, X, R[:n].copy(), J[:n, :n].copy(), (changes[0], changes[1]), float(truncation), along)
+        return Linearisation(
+            self, pb, W, X, R[:n].copy(), J[:n, :n].copy(), (changes[0], changes[1]), float(truncation), along
+        )
 
-    def _along(self, pb: Problem, W: float, X: Floats) -> tuple[Floats, Floats, Floats]:
+    def _along(self, pb: CondensedSystem, W: float, X: Floats) -> tuple[Floats, Floats, Floats]:
         """Samples z, w (E, N) along an orbit and the derivatives (4, E, N) of the forces there."""
         z, w = self.motion(pb, W, X)
         out = np.empty((4, *z.shape))
         _derivatives(pb, z, w, out)
         return z, w, out
 
-    def motion(self, pb: Problem, W: float, X: Floats) -> tuple[Floats, Floats]:
+    def motion(self, pb: CondensedSystem, W: float, X: Floats) -> tuple[Floats, Floats]:
         """Samples (E, N) of the elements' displacements and velocities for an unknown vector."""
         z = np.empty((pb.directions.shape[1], self.tables[0].shape[1]))
         w = np.empty_like(z)
         _motion(pb, self.H, self.odd, W, np.ascontiguousarray(X), *self.tables, z, w)
         return z, w
 
-    def projected(self, pb: Problem, samples: Floats) -> Floats:
+    def projected(self, pb: CondensedSystem, samples: Floats) -> Floats:
         """What forces with the samples (E, N) on the elements contribute to the residual (n,)."""
         co, si = self.tables
         rows = list(self.harmonics)
@@ -207,7 +216,7 @@ class Change:
     """
 
     equations: Equations
-    problem: Problem
+    problem: CondensedSystem
     W: float
     rate: Floats
     stiffness: CondensedChange | None
@@ -219,7 +228,7 @@ class Change:
             return 1j * k * stiffness_and_slope(self.problem, s)[1]
         return self.stiffness.at(s)[0]
 
-    def applied(self, orbit: Orbit, v: Floats) -> Floats:
+    def applied(self, orbit: Linearisation, v: Floats) -> Floats:
         """Derivative of J v by this axis at fixed X and v."""
         eq, pb = self.equations, self.problem
         out = eq.real_blocks({k: self.block(1j * k * self.W, k) for k in eq.harmonics}) @ v
@@ -236,14 +245,14 @@ class Change:
 
 
 @dataclass
-class Orbit:
+class Linearisation:
     """Residual R (n,), Jacobian J (n, n), and changes along both axes at one point.
 
     `along` holds samples (E, N) of z and w and the forces' derivatives dg/dz, dg/dw, d2g/dz2, d2g/dw2 (4, E, N).
     """
 
     equations: Equations
-    problem: Problem
+    problem: CondensedSystem
     W: float
     X: Floats
     R: Floats
@@ -280,6 +289,11 @@ class Orbit:
         return out
 
 
+def row_weights(A: Floats | Complexes) -> Floats:
+    """Factors that make the largest entry of every row 1 in size."""
+    return np.asarray(1.0 / np.max(np.abs(A), axis=1), dtype=float)
+
+
 def of_first(samples: Floats, like: Floats) -> Floats:
     """Samples of the first element, zero for the others."""
     out = np.zeros_like(like)
@@ -287,7 +301,7 @@ def of_first(samples: Floats, like: Floats) -> Floats:
     return out
 
 
-def stiffness_and_slope(pb: Problem, s: complex) -> tuple[Complexes, Complexes, Complexes]:
+def stiffness_and_slope(pb: CondensedSystem, s: complex) -> tuple[Complexes, Complexes, Complexes]:
     """S(s), dS/ds (r, r) and the condensed force (r,)."""
     r = pb.M11.shape[0]
     S, dS = np.empty((r, r), complex), np.empty((r, r), complex)

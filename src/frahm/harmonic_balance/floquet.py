@@ -17,6 +17,7 @@ from frahm.absorbers.packed import law_force_and_slopes, polynomial_and_slopes
 from frahm.compiled import kernel, separate_kernel
 from frahm.harmonic_balance.hill import refine_exponents
 from frahm.polynomials import quadratic_factors
+from frahm.tolerances import TINY
 
 _NODES = 9
 _ORDER = 14
@@ -128,8 +129,8 @@ def _unresolved(va, values, rates, steepest, fastest, h):
         square += va.hardest[e] * np.max(np.abs(values[e, e]))
         rate += va.hardest[e] * np.max(np.abs(rates[e]))
         for i in range(_NODES - 2, _NODES):
-            worst = max(worst, abs(np.sum(_TO_CHEBYSHEV[i] * values[e, e])) / max(steepest[e], 1e-300))
-            worst = max(worst, abs(np.sum(_TO_CHEBYSHEV[i] * rates[e])) / max(fastest[e], 1e-300))
+            worst = max(worst, abs(np.sum(_TO_CHEBYSHEV[i] * values[e, e])) / max(steepest[e], TINY))
+            worst = max(worst, abs(np.sum(_TO_CHEBYSHEV[i] * rates[e])) / max(fastest[e], TINY))
     return math.inf if h * math.sqrt(square) > _ADVANCE or h * rate > _ADVANCE else worst
 
 

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance.equations import Equations
+from frahm.harmonic_balance.equations import Equations, row_weights
 
 
 @dataclass
 class FoldEquations(Equations):
     """Saddle-node points: R = 0 and g = 0, unknowns (X, q1, q2)."""
 
-    border: tuple[Floats, Floats] | None = None
+    border: tuple[Floats, Floats] = field(init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        J = self.orbit(self.start).J
+        left, _, right = np.linalg.svd(row_weights(J)[:, None] * J)
+        self.border = left[:, -1], right[-1]
 
     def residual(self, y: Floats) -> tuple[Floats, Floats]:
         """Residual (n + 1,) and Jacobian (n + 1, n + 2) in scaled unknowns."""
@@ -22,10 +28,7 @@ class FoldEquations(Equations):
         if min(self.axis_values(y)) <= 0:  # no system there: Newton's method is told to turn back
             return np.full(n + 1, np.nan), np.full((n + 1, n + 2), np.nan)
         orbit = self.orbit(y)
-        weight = 1.0 / np.max(np.abs(orbit.J), axis=1)
-        if self.border is None:
-            left, _, right = np.linalg.svd(weight[:, None] * orbit.J)
-            self.border = left[:, -1], right[-1]
+        weight = row_weights(orbit.J)
         b, c = self.border
         A = np.block([[weight[:, None] * orbit.J, b[:, None]], [c[None], np.zeros((1, 1))]])
         unit = np.zeros(n + 1)

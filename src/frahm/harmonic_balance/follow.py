@@ -27,12 +27,10 @@ def follow(pb, odd, y0, H0, H_most, goal, direction, lo, hi, x_scale, w_scale, l
     Fills ys, ts (points, size) with points and scaled unit tangents, Hs and truncations (points,); harmonics are added
     and dropped on the way so that the truncation stays below `goal`. Returns (number of points, how it ended).
     """
-    step = 2 if odd else 1
-    size = ys.shape[1]
+    step, size = 2 if odd else 1, ys.shape[1]
     J, A, pivots = np.empty((size, size)), np.empty((size, size)), np.empty(size, np.int64)
     y, t, t_new, old, normal = (np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size), np.zeros(size))
-    H = H0
-    n = unknowns(pb, H, odd)
+    H, n = H0, unknowns(pb, H0, odd)
     y[: n + 1] = y0[: n + 1]
     co, si = fourier_tables(H, odd, sample_count(pb, H, odd))
     normal[n] = 1.0
@@ -67,14 +65,10 @@ def follow(pb, odd, y0, H0, H_most, goal, direction, lo, hi, x_scale, w_scale, l
                 return count, STEP_TOO_SMALL
             continue
         if truncation > goal and H + 2 * step <= H_most:  # the point asks for more harmonics: take the last one anew
-            H, n = _more(pb, H, H + 2 * step, odd, count - 1, ys, ts, n)
-            co, si = fourier_tables(H, odd, sample_count(pb, H, odd))
+            H += 2 * step
+            n = n_old = _resize_last(pb, odd, H, count, ys, ts, Hs)
             t[: n + 1] = ts[count - 1, : n + 1]
-            Hs[count - 1] = H
-            if count > 1:
-                _more(pb, Hs[count - 2], H, odd, count - 2, ys, ts, unknowns(pb, Hs[count - 2], odd))
-                Hs[count - 2] = H
-            n_old = n
+            co, si = fourier_tables(H, odd, sample_count(pb, H, odd))
             quiet = 0
             continue
         t[: n + 1] = t_new[: n + 1]
@@ -91,14 +85,11 @@ def follow(pb, odd, y0, H0, H_most, goal, direction, lo, hi, x_scale, w_scale, l
             return count, LEFT
         quiet = quiet + 1 if truncation < 1e-3 * goal and goal < math.inf else 0  # a given number is kept
         if quiet > 3 and H - 2 * step >= 3:  # more harmonics than needed
-            _more(pb, H, H - 2 * step, odd, count - 1, ys, ts, n)
-            _more(pb, H, H - 2 * step, odd, count - 2, ys, ts, n)
             H -= 2 * step
-            n = unknowns(pb, H, odd)
-            Hs[count - 1], Hs[count - 2] = H, H
+            n = n_old = _resize_last(pb, odd, H, count, ys, ts, Hs)
             t[: n + 1] = ts[count - 1, : n + 1]
             co, si = fourier_tables(H, odd, sample_count(pb, H, odd))
-            n_old, quiet = n, 0
+            quiet = 0
     return count, TOO_LONG
 
 
@@ -113,11 +104,13 @@ def _store(i, y, t, H, truncation, n, ys, ts, Hs, truncations):
 
 
 @kernel
-def _more(pb, H, H_new, odd, i, ys, ts, n):
-    """Give a stored point another number of harmonics; returns the new number and the new length."""
-    resize(pb, H, H_new, odd, ys[i])
-    resize(pb, H, H_new, odd, ts[i])
-    return H_new, unknowns(pb, H_new, odd)
+def _resize_last(pb, odd, H, count, ys, ts, Hs):
+    """Give the last two stored points another number of harmonics; returns their new number of unknowns."""
+    for i in range(count - 1, max(count - 3, -1), -1):
+        resize(pb, Hs[i], H, odd, ys[i])
+        resize(pb, Hs[i], H, odd, ts[i])
+        Hs[i] = H
+    return unknowns(pb, H, odd)
 
 
 @kernel

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from frahm.arrays import Floats
+from frahm.harmonic_balance.branch import Point, Points, SolutionBranch, point_between, undescribed
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.follow import CLOSED, follow
-from frahm.harmonic_balance.orbits import between, same_harmonics
-from frahm.harmonic_balance.search import Search, Track
+from frahm.harmonic_balance.search import Search
 
 _MOST_POINTS = 6000
 _LONGEST = 0.02
@@ -19,18 +21,18 @@ _SAME = 1e-5  # relative distance of two solutions that are one
 _ROUNDING = 1e-13  # of a frequency
 
 
-def followed(search: Search, odd: bool, y: Floats, H: int) -> Track:
+def followed(search: Search, odd: bool, y: Floats, H: int) -> SolutionBranch:
     """Follow a branch from one of its points in both directions."""
-    forward, ending = _run(search, odd, y, H, 1.0)
+    forward, ending = _one_way(search, odd, y, H, 1.0)
     if ending == CLOSED:
-        return track_of(search, odd, [forward], True, (ending,))
-    backward, other = _run(search, odd, y, H, -1.0)
-    reverse = tuple(np.ascontiguousarray(part[::-1]) for part in backward)
-    reverse = (reverse[0][:-1], -reverse[1][:-1], reverse[2][:-1], reverse[3][:-1])
-    return track_of(search, odd, [reverse, forward], False, (other, ending))
+        return SolutionBranch(odd, forward, True, (ending,))
+    backward, other = _one_way(search, odd, y, H, -1.0)
+    reverse = backward.take(np.arange(len(backward))[:0:-1])
+    points = forward.insert(np.zeros(len(reverse), int), replace(reverse, ts=-reverse.ts))
+    return SolutionBranch(odd, points, False, (other, ending))
 
 
-def _run(search: Search, odd: bool, y: Floats, H: int, direction: float) -> tuple[tuple[np.ndarray, ...], int]:
+def _one_way(search: Search, odd: bool, y: Floats, H: int, direction: float) -> tuple[Points, int]:
     size = search.size(odd)
     most = search.budget.points_of(unknowns(search.problem, H, odd), _MOST_POINTS)
     ys, ts = np.empty((most, size)), np.empty((most, size))
@@ -41,72 +43,64 @@ def _run(search: Search, odd: bool, y: Floats, H: int, direction: float) -> tupl
     )  # fmt: skip
     if count:
         search.budget.take_points(count, int(np.mean(unknowns(search.problem, Hs[:count], odd))))
-    return (ys[:count].copy(), ts[:count].copy(), Hs[:count].copy(), truncations[:count].copy()), ending
+    return undescribed(search, odd, ys[:count].copy(), ts[:count].copy(), Hs[:count], truncations[:count]), ending
 
 
-def track_of(
-    search: Search, odd: bool, parts: list[tuple[np.ndarray, ...]], closed: bool, endings: tuple[int, ...]
-) -> Track:
-    """A branch made of parts in order, not yet described."""
-    ys, ts, Hs, truncations = (np.concatenate(column) for column in zip(*parts, strict=True))
-    columns = np.zeros((len(Hs), 5))
-    columns[:, 0] = ys[np.arange(len(Hs)), unknowns(search.problem, Hs, odd)]
-    return Track(odd, ys, ts, Hs, truncations, columns, np.zeros((0, 0)), closed, endings)
+def far_from_folds(search: Search, branch: SolutionBranch) -> int:
+    """The point of a branch in the window where Omega changes most along it: a good one to solve anew at its Omega."""
+    rise, W = np.abs(branch.points.rise(search.problem, branch.odd)), branch.points.frequency
+    return int(np.argmax(np.where((search.lo <= W) & (search.hi >= W), rise, -1.0)))
 
 
-def lies_on(search: Search, track: Track, y: Floats, H: int) -> bool:
+def lies_on(search: Search, branch: SolutionBranch, y: Floats, H: int) -> bool:
     """Whether a solution is a point of a branch already followed: compared in its own plane across the chord of a step.
 
     Only steps that reach its frequency are looked at, or in which the frequency turns.
     """
-    n = unknowns(search.problem, H, track.odd)
-    beyond = track.frequency - y[n]
-    rise = track.ts[np.arange(len(track.Hs)), unknowns(search.problem, track.Hs, track.odd)]
+    n = unknowns(search.problem, H, branch.odd)
+    beyond = branch.points.frequency - y[n]
+    rise = branch.points.rise(search.problem, branch.odd)
     steps = np.flatnonzero((beyond[:-1] * beyond[1:] <= 0) | (rise[:-1] * rise[1:] < 0))
-    return any(lies_in_step(search, track, y, H, y[n], int(i)) for i in steps)
+    return any(lies_in_step(search, branch, y, H, y[n], int(i)) for i in steps)
 
 
-def lies_in_step(search: Search, track: Track, X: Floats, H: int, W: float, i: int) -> bool:
+def lies_in_step(search: Search, branch: SolutionBranch, X: Floats, H: int, W: float, i: int) -> bool:
     """Whether a solution at Omega = W is the point of the branch in its own plane across the chord of step i."""
-    n = unknowns(search.problem, H, track.odd)
+    pb, odd = search.problem, branch.odd
+    n = unknowns(pb, H, odd)
     y = np.append(X[:n], W)
     scales = np.append(np.full(n, search.x_scale), search.w_scale)
-    a, b = (_with_unknowns(search, track, k, n) / scales for k in (i, i + 1))
-    here, chord = y[: n + 1] / scales - a, b - a
+    a, b = (branch.points[k].with_unknowns(pb, odd, n) / scales for k in (i, i + 1))
+    here, chord = y / scales - a, b - a
     length = float(np.linalg.norm(chord))
     if length == 0.0:  # the branch was outside the window in between
         return False
     fraction = float(here @ chord) / length**2
     if not -_OVERHANG <= fraction <= 1 + _OVERHANG or np.linalg.norm(here - fraction * chord) > _AWAY * length:
         return False
-    point = midpoint(search, track, i, fraction)
+    point = point_in_step(search, branch, i, fraction)
     if point is None:
         return False
-    found, own = np.zeros(n + 1), unknowns(search.problem, point[2], track.odd)
-    found[: min(n, own)], found[n] = point[0][: min(n, own)], point[0][own]
-    return bool(np.linalg.norm((found - y[: n + 1]) / scales) < _SAME * np.linalg.norm(y[:n]) / search.x_scale)
+    apart = (point.with_unknowns(pb, odd, n) - y) / scales
+    return bool(np.linalg.norm(apart) < _SAME * np.linalg.norm(y[:n]) / search.x_scale)
 
 
-def _with_unknowns(search: Search, track: Track, i: int, n: int) -> Floats:
-    """A point of a branch with `n` unknowns before Omega."""
-    own = unknowns(search.problem, track.Hs[i], track.odd)
-    point = np.zeros(n + 1)
-    point[: min(n, own)], point[n] = track.ys[i, : min(n, own)], track.ys[i, own]
-    return point
+def point_in_step(search: Search, branch: SolutionBranch, i: int, fraction: float = 0.5) -> Point | None:
+    """Point of a branch between its points i and i + 1; None if Newton's method fails."""
+    return point_between(search, branch.odd, branch.points[i], branch.points[i + 1], fraction)
 
 
-def point_at(search: Search, track: Track, i: int, W: float) -> tuple[Floats, int] | None:
-    """Point of the branch at Omega = W between points i and i + 1 and its harmonics, by the Illinois method."""
-    lo, hi, below, above = 0.0, 1.0, track.frequency[i] - W, track.frequency[i + 1] - W
+def point_at(search: Search, branch: SolutionBranch, i: int, W: float) -> Point | None:
+    """Point of the branch at Omega = W between points i and i + 1, by the Illinois method."""
+    lo, hi, (below, above) = 0.0, 1.0, branch.points.frequency[i : i + 2] - W
     found = None
     for _ in range(_HALVINGS):
         share = 0.5 * (lo + hi) if below == above else (lo * above - hi * below) / (above - below)
-        point = midpoint(search, track, i, share)
+        point = point_in_step(search, branch, i, share)
         if point is None:
             return found
-        y, _, H = point
-        found = y, H
-        miss = float(y[unknowns(search.problem, H, track.odd)]) - W
+        found = point
+        miss = float(point.y[unknowns(search.problem, point.H, branch.odd)]) - W
         if abs(miss) < _ROUNDING * W:
             break
         if miss * above < 0:
@@ -115,17 +109,3 @@ def point_at(search: Search, track: Track, i: int, W: float) -> tuple[Floats, in
             below *= 0.5
         hi, above = share, miss
     return found
-
-
-def midpoint(search: Search, track: Track, i: int, fraction: float = 0.5) -> tuple[Floats, Floats, int] | None:
-    """Point, tangent and number of harmonics between points i and i + 1 of a branch; None if Newton's method fails."""
-    pb, odd = search.problem, track.odd
-    if i + 1 >= len(track.Hs):
-        return None
-    H = int(max(track.Hs[i], track.Hs[i + 1]))
-    ends = [np.zeros(search.size(odd)) for _ in range(4)]
-    for k in (0, 1):
-        same_harmonics(pb, odd, track.ys[i + k], track.ts[i + k], track.Hs[i + k], H, ends[k], ends[2 + k])
-    y, t = np.zeros(search.size(odd)), np.zeros(search.size(odd))
-    ok = between(pb, odd, ends[0], ends[2], ends[1], ends[3], H, fraction, search.x_scale, search.w_scale, y, t)
-    return (y, t, H) if ok else None

@@ -11,7 +11,7 @@ from frahm import readable
 T = TypeVar("T")
 
 MOST_POINTS = 30_000  # of all branches together, each counted with the work of its unknowns
-MOST_EVENTS = 300  # special points located
+MOST_BIFURCATIONS = 300  # located
 _LIGHT = 100  # unknowns up to which a point counts once
 
 
@@ -40,7 +40,7 @@ class Budget:
     """Work that is left for a search, so that none goes on without end; the same on every machine."""
 
     points: float = MOST_POINTS
-    events: int = MOST_EVENTS
+    bifurcations: int = MOST_BIFURCATIONS
 
     @property
     def reached(self) -> bool:
@@ -59,5 +59,6 @@ class Budget:
         """What to say if the limit was met."""
         limit = "met its limit of work: what was found is kept, but there may be further"
         branches = [f"The search for branches {limit} responses."] if self.reached else []
-        points = [f"The search for special points {limit} ones, and branches born there."] if self.events <= 0 else []
+        special = f"The search for special points {limit} ones, and branches born there."
+        points = [special] if self.bifurcations <= 0 else []
         return (*branches, *points)

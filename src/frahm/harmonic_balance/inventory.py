@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from frahm.harmonic_balance.births import MARGIN
+from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.describing import PER_DECADE
 from frahm.harmonic_balance.follow import CLOSED, LEFT
-from frahm.harmonic_balance.search import Search, Track
+from frahm.harmonic_balance.search import Search
 
 _SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
 
@@ -75,11 +76,11 @@ def all_known(search: Search, at: float | None) -> bool:
     return at is not None and search.harmonics == 1 and proven and at not in seeder.doubtful
 
 
-def unfinished(tracks: list[Track]) -> list[str]:
+def unfinished(branches: list[SolutionBranch]) -> list[str]:
     """A sentence on every branch that could not be followed to its end."""
     return [
         f"Branch {number} could not be followed to its end; it stops near"
-        f" {track.frequency[0]:.6g}, {track.frequency[-1]:.6g} rad/s."
-        for number, track in enumerate(tracks)
-        if any(ending not in (LEFT, CLOSED) for ending in track.endings)
+        f" {branch.points.frequency[0]:.6g}, {branch.points.frequency[-1]:.6g} rad/s."
+        for number, branch in enumerate(branches)
+        if any(ending not in (LEFT, CLOSED) for ending in branch.endings)
     ]

@@ -63,13 +63,17 @@ def resonant_grid(system: System, lo: float, hi: float) -> Floats:
     theta evenly spread, which is evenly along the circle that a resonance draws in the complex plane.
     """
     values = linear_exponents(system)
-    turns = np.tan(np.linspace(-0.5, 0.5, _AROUND + 2)[1:-1] * np.pi)
-    parts = [np.linspace(lo, hi, _EVEN)]
-    for value in values[values.imag > 0]:
-        parts.append(value.imag + max(-value.real, _NARROWEST * value.imag) * turns)
+    around = [around_resonance(value.imag, -value.real, _AROUND) for value in values[values.imag > 0]]
+    parts = [np.linspace(lo, hi, _EVEN), *around]
     undamped = system.natural_frequencies
     grid = np.unique(np.concatenate([*parts, undamped]))
     return grid[(grid >= lo) & (grid <= hi)]
+
+
+def around_resonance(omega: float, decay: float, points: int) -> Floats:
+    """Frequencies [rad/s] evenly along the circle that a resonance draws in the complex plane."""
+    turns = np.tan(np.linspace(-0.5, 0.5, points + 2)[1:-1] * np.pi)
+    return np.asarray(omega + max(decay, _NARROWEST * omega) * turns)
 
 
 def linear_growth(system: System) -> float:

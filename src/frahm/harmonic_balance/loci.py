@@ -8,21 +8,23 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from frahm.arrays import Floats
 from frahm.continuation import ContinuationSettings, CurvePoint, between_points, follow_curve, newton
 from frahm.errors import Outcome
+from frahm.harmonic_balance.bifurcations import COMPLEX
+from frahm.harmonic_balance.branch import Bifurcation, Point, SolutionBranch, located
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import condense, unknowns
 from frahm.harmonic_balance.equations import FREQUENCY, Equations
-from frahm.harmonic_balance.events import LocatedEvent
 from frahm.harmonic_balance.floquet import map_multipliers
 from frahm.harmonic_balance.fold_equations import FoldEquations
 from frahm.harmonic_balance.kernels import harmonics_of
 from frahm.harmonic_balance.orbits import output_series, peak_of
-from frahm.harmonic_balance.search import Search, Track, begin
+from frahm.harmonic_balance.search import Search, search_over
 from frahm.harmonic_balance.torus_equations import TorusEquations
 from frahm.systems import System, parameter_value, with_parameters
 
@@ -31,7 +33,6 @@ _MOST_HARMONICS = 61
 _GOAL = 1e-6
 _RESIDUAL, _MOST_STEPS = 1e-9, 12  # of Newton's method, in scaled unknowns
 _EDGE = 1e-9  # a point this far beyond the bounds lies on them
-_COMPLEX = 1e-6  # imaginary part from which on a multiplier is one of a pair
 _RETURN = 0.5  # cosine of the angle by which a curve in its plane turns back at a cusp
 _TURN = 0.5  # change of a multiplier's argument from point to point [rad], above which it has wrapped around
 _ON_SLICE = (0.3, 2e-3, 0.05)  # one point on a slice: of the step and of the window in frequency, of the peak
@@ -71,12 +72,12 @@ class Locus:
 
 @dataclass(frozen=True)
 class _Start:
-    """A located special point: its slice, its orbit and the tracks' scales."""
+    """A located special point: its slice, its orbit and the branches' scales."""
 
     search: Search
-    track: Track
-    event: LocatedEvent
-    point: tuple[Floats, Floats, int]
+    branch: SolutionBranch
+    event: Bifurcation
+    point: Point
     slice_value: float
 
 
@@ -102,7 +103,7 @@ def loci_with_frequency(
     for value in _slice_values(system, parameter, bounds, slices):
         for start in _starts(system, kind, parameter, window, value, asymmetric, doubts):
             frequency, peak = float(start.event.columns[0]), float(start.event.columns[4])
-            alike = [locus for locus in loci if locus.symmetric == start.track.odd]
+            alike = [locus for locus in loci if locus.symmetric == start.branch.odd]
             if any(_lies_on(locus, frequency, value, peak, window) for locus in alike):
                 continue
             found = _follow(system, start, kind, (FREQUENCY, parameter), (window, bounds), frequency)
@@ -152,14 +153,13 @@ def _starts(
     system: System, kind: str, parameter: str, window: tuple[float, float], value: float, asymmetric: bool,
     doubts: list[str],
 ) -> list[_Start]:  # fmt: skip
-    search = begin(with_parameters(system, **{parameter: float(value)}), *window, None)
+    search = search_over(with_parameters(system, **{parameter: float(value)}), *window, None)
     starts = []
-    tracks = find_branches(search, asymmetric)
+    branches = find_branches(search, asymmetric)
     doubts += [f"At {parameter} {value:.6g}: {sentence}" for sentence in search.budget.sentences()]
-    for track in tracks:
-        for event, point in zip(track.events, track.event_points, strict=True):
-            if event.kind == kind and point is not None:
-                starts.append(_Start(search, track, event, point, float(value)))
+    for branch in branches:
+        for event, point in located(branch.bifurcations, kind):
+            starts.append(_Start(search, branch, event, point, float(value)))
     return starts
 
 
@@ -172,22 +172,18 @@ def _follow(
     frequency: float,
 ) -> tuple[Locus, tuple[Equations, list[CurvePoint]]] | None:
     """Follow a curve from a located point in both directions, with more harmonics if it needs them."""
-    pb, odd = start.search.problem, start.track.odd
-    y, _, H0 = start.point
-    n0 = unknowns(pb, H0, odd)
-    scales = tuple(hi - lo for lo, hi in bounds)
-    given = [y[n0], start.slice_value]
-    H = H0 + 4
+    pb, odd = start.search.problem, start.branch.odd
+    y, H0 = start.point.y, start.point.H
+    n0, H = unknowns(pb, H0, odd), H0 + 4
+    scales = bounds[0][1] - bounds[0][0], bounds[1][1] - bounds[1][0]
     while True:
-        cls = FoldEquations if kind == "saddle-node" else TorusEquations
-        equations = cls(system, axes, frequency, H, odd, start.search.x_scale, scales)  # type: ignore[arg-type]
-        first = np.zeros(equations.n + (2 if kind == "saddle-node" else 3))
+        first = np.append(np.zeros(unknowns(pb, H, odd)), [y[n0], start.slice_value] / np.array(scales))
         first[:n0] = y[:n0] / start.search.x_scale
-        first[equations.n : equations.n + 2] = [given[0] / scales[0], given[1] / scales[1]]
         if kind != "saddle-node":
-            first[-1] = _angular_rate(start) / frequency
-        found = _both_ways(equations, first, bounds)
-        if found is None:
+            first = np.append(first, _angular_rate(start) / frequency)
+        equations = _equations(kind, system, axes, frequency, H, odd, start.search.x_scale, scales, first)
+        found = None if equations is None else _both_ways(equations, bounds)
+        if equations is None or found is None:
             return None
         points, outcomes = found
         worst = max(equations.orbit(p.y).truncation for p in points[:: max(1, len(points) // 12)])
@@ -196,10 +192,19 @@ def _follow(
         H += 8
 
 
+def _equations(kind: str, *given: Any) -> Equations | None:
+    """Defining equations of a kind of points; None where the matrix at their start cannot be decomposed."""
+    try:
+        return FoldEquations(*given) if kind == "saddle-node" else TorusEquations(*given)
+    except np.linalg.LinAlgError:
+        return None
+
+
 def _both_ways(
-    equations: Equations, first: Floats, bounds: tuple[tuple[float, float], tuple[float, float]]
+    equations: Equations, bounds: tuple[tuple[float, float], tuple[float, float]]
 ) -> tuple[list[CurvePoint], tuple[Outcome, ...]] | None:
-    n = equations.n
+    """Follow the curve from the start of its equations in both directions."""
+    n, first = equations.n, equations.start
 
     def inside(y: Floats) -> bool:
         values = equations.axis_values(y)
@@ -207,16 +212,16 @@ def _both_ways(
 
     guide = np.zeros(first.size)
     guide[n + 1] = 1.0
-    settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)  # type: ignore[attr-defined]
+    settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)
     if settled is None:
         guide[n], guide[n + 1] = 1.0, 0.0
-        settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)  # type: ignore[attr-defined]
+        settled = newton(equations.residual, first, guide, _RESIDUAL, _MOST_STEPS)
     if settled is None:
         return None
     parts, outcomes = [], []
     for sign in (1.0, -1.0):
         part: list[CurvePoint] = []
-        for item in follow_curve(equations.residual, settled.y, sign * settled.tangent, inside, _SETTINGS):  # type: ignore[attr-defined]
+        for item in follow_curve(equations.residual, settled.y, sign * settled.tangent, inside, _SETTINGS):
             if isinstance(item, Outcome):
                 outcomes.append(item)
             else:
@@ -243,14 +248,14 @@ def _before_mirror(equations: Equations, points: list[CurvePoint]) -> list[Curve
 
 def _angular_rate(start: _Start) -> float:
     """Imaginary part nu [rad/s] of the critical exponent at a Neimark-Sacker point."""
-    pb, odd = start.search.problem, start.track.odd
-    y, _, H = start.point
+    pb, odd = start.search.problem, start.branch.odd
+    y, H = start.point.y, start.point.H
     W = y[unknowns(pb, H, odd)]
     u = np.empty((H + 5, pb.M11.shape[0]), complex)
     harmonics_of(pb, H, odd, y, u)
     values = np.empty(2 * start.search.variation.K.shape[0], complex)
     map_multipliers(pb, start.search.variation, H, odd, W, u, values)
-    pairs = values[values.imag > _COMPLEX]
+    pairs = values[values.imag > COMPLEX]
     critical = pairs[np.argmin(np.abs(np.log(np.abs(pairs))))]
     return float(np.angle(critical) * W / (math.pi if odd else 2 * math.pi))
 
@@ -318,7 +323,7 @@ def _at_frequency(equations: Equations, points: list[CurvePoint], frequency: flo
     found = []
     for a, b in itertools.pairwise(points):
         if (a.y[equations.n] - scaled) * (b.y[equations.n] - scaled) <= 0:
-            point = between_points(equations.residual, a, b, lambda p: float(p.y[equations.n] - scaled), _AT)  # type: ignore[attr-defined]
+            point = between_points(equations.residual, a, b, lambda p: float(p.y[equations.n] - scaled), _AT)
             if point is not None:
                 found.append(point)
     return found
@@ -335,16 +340,15 @@ def _from_point(
     value: float,
 ) -> Locus | None:
     """Follow a curve in a plane without the frequency from a point of a curve in a plane with it."""
-    cls = FoldEquations if kind == "saddle-node" else TorusEquations
-    scales = tuple(hi - lo for lo, hi in bounds)
-    equations = cls(system, plane, frequency, given.H, given.odd, given.x_scale, scales)  # type: ignore[arg-type]
+    scales = bounds[0][1] - bounds[0][0], bounds[1][1] - bounds[1][0]
     first = point.y.copy()
     first[given.n] = given.axis_values(point.y)[1] / scales[0]
     first[given.n + 1] = value / scales[1]
     if kind != "saddle-node":
         first[-1] = point.y[-1] * given.frequency / frequency
-    found = _both_ways(equations, first, bounds)
-    return None if found is None else _locus(equations, found[0], kind, found[1])
+    equations = _equations(kind, system, plane, frequency, given.H, given.odd, given.x_scale, scales, first)
+    found = None if equations is None else _both_ways(equations, bounds)
+    return None if equations is None or found is None else _locus(equations, found[0], kind, found[1])
 
 
 def _same_curve(a: Locus, b: Locus, bounds: tuple[tuple[float, float], tuple[float, float]]) -> bool:

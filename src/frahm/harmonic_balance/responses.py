@@ -10,9 +10,10 @@ from numpy.typing import ArrayLike
 
 from frahm import readable
 from frahm.arrays import Complexes, Floats, frozen
+from frahm.harmonic_balance.bifurcations import unstable_count
+from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
-from frahm.harmonic_balance.events import unstable_count
 from frahm.harmonic_balance.floquet import monodromy
 from frahm.harmonic_balance.following import lies_in_step, point_at
 from frahm.harmonic_balance.found import Found
@@ -29,7 +30,7 @@ from frahm.harmonic_balance.kernels import harmonics_of, output_harmonic
 from frahm.harmonic_balance.linear import check_rest, is_linear, linear_exponents, linear_response
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.orbits import peak_of
-from frahm.harmonic_balance.search import Search, Track, begin
+from frahm.harmonic_balance.search import Search, search_over
 from frahm.harmonic_balance.starts import solve_seed
 from frahm.harmonic_balance.variation import variation_of
 from frahm.systems import System
@@ -109,14 +110,14 @@ def periodic_responses_of(
     """
     if is_linear(system) or not np.any(system.forcing):
         return Found([_linear(system, frequency)], "A linear system has one periodic response.")
-    search = begin(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
+    search = search_over(system, frequency * (1 - _NEIGHBOURHOOD), frequency * (1 + _NEIGHBOURHOOD), harmonics)
     known = _of_one_harmonic(search, frequency)
     if known is not None:
         return known
-    tracks = find_branches(search, at=frequency)
-    found = responses_on(search, tracks, frequency)
+    branches = find_branches(search, at=frequency)
+    found = responses_on(search, branches, frequency)
     doubts = (
-        *search.unsearched, *search.budget.sentences(), *not_proven(search, frequency), *unfinished(tracks),
+        *search.unsearched, *search.budget.sentences(), *not_proven(search, frequency), *unfinished(branches),
         *(_missing(search, found) if found else (NONE_FOUND,)), *(unstable_unproven(search) if every else ()),
     )  # fmt: skip
     return Found(found, inventory_text(search), doubts)
@@ -143,36 +144,36 @@ def _missing(search: Search, found: Sequence[PeriodicResponse]) -> tuple[str, ..
     return missing(search.system, [response.multipliers for response in found], largest)
 
 
-def responses_on(search: Search, tracks: Iterable[Track], frequency: float) -> list[PeriodicResponse]:
+def responses_on(search: Search, branches: Iterable[SolutionBranch], frequency: float) -> list[PeriodicResponse]:
     """Periodic responses at Omega = `frequency` [rad/s] on branches already followed, by relative amplitude."""
     found: list[PeriodicResponse] = []
-    for track in tracks:
-        for X, H in _crossings(search, track, frequency):
-            response = _response(search, track.odd, X, H, frequency)
+    for branch in branches:
+        for X, H in _crossings(search, branch, frequency):
+            response = _response(search, branch.odd, X, H, frequency)
             if not any(_same(response, other) for other in found):
                 found.append(response)
-            if not track.odd and search.problem.odd:
+            if not branch.odd and search.problem.odd:
                 mirrored = _response(search, False, _mirrored(search, X, H), H, frequency)
                 if not any(_same(mirrored, other) for other in found):
                     found.append(mirrored)
     return sorted(found, key=lambda response: response.relative_amplitude)
 
 
-def _crossings(search: Search, track: Track, W: float) -> list[tuple[Floats, int]]:
+def _crossings(search: Search, branch: SolutionBranch, W: float) -> list[tuple[Floats, int]]:
     """Solutions of a branch at one frequency, after Newton there with harmonics added as needed."""
-    out = []
-    for i in np.flatnonzero((track.frequency[:-1] - W) * (track.frequency[1:] - W) <= 0):
-        a, b = track.frequency[i], track.frequency[i + 1]
+    out, points = [], branch.points
+    for i in np.flatnonzero((points.frequency[:-1] - W) * (points.frequency[1:] - W) <= 0):
+        a, b = points.frequency[i : i + 2]
         f = 0.5 if a == b else (W - a) / (b - a)
-        guess = np.zeros(search.size(track.odd))
+        guess = np.zeros(search.size(branch.odd))
         for k, weight in ((i, 1 - f), (i + 1, f)):
-            n = unknowns(search.problem, track.Hs[k], track.odd)
-            guess[:n] += weight * track.ys[k, :n]
-        found = _solved(search, track.odd, W, guess, int(max(track.Hs[i], track.Hs[i + 1])))
-        if a != b and (found is None or not lies_in_step(search, track, *found, W, int(i))):
+            n = unknowns(search.problem, points.Hs[k], branch.odd)
+            guess[:n] += weight * points.ys[k, :n]
+        found = _solved(search, branch.odd, W, guess, int(max(points.Hs[i : i + 2])))
+        if a != b and (found is None or not lies_in_step(search, branch, *found, W, int(i))):
             # beside a special point another orbit is nearer to the chord than that of the branch
-            start = point_at(search, track, int(i), W)
-            found = None if start is None else _solved(search, track.odd, W, *start)
+            start = point_at(search, branch, int(i), W)
+            found = None if start is None else _solved(search, branch.odd, W, start.y, start.H)
         if found is not None:
             out.append(found)
     return out

@@ -15,8 +15,8 @@ import numpy as np
 
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import Problem
-from frahm.harmonic_balance.describing import PER_DECADE, Table, friction_stiffness
+from frahm.harmonic_balance.condensation import CondensedSystem
+from frahm.harmonic_balance.describing import PER_DECADE, AmplitudeTable, friction_stiffness
 
 _LOWEST, _HIGHEST = 0.3, 1.2  # amplitudes looked at, in the smallest linear and the largest damped response
 _MOST_DECADES = 14
@@ -55,7 +55,9 @@ def _counted(S, F, a, N, before, after, counts, turns):
     return found
 
 
-def table_counts(pb: Problem, table: Table, W: Floats, S: Complexes, F: Complexes) -> tuple[np.ndarray, Floats]:
+def table_counts(
+    pb: CondensedSystem, table: AmplitudeTable, W: Floats, S: Complexes, F: Complexes
+) -> tuple[np.ndarray, Floats]:
     """Number of roots along the curves of a table at frequencies W (w,), and the turns of lambda (t, 5).
 
     S and F (w,) are stiffness and force at the first harmonic. A turn is the number of the frequency, ln a,

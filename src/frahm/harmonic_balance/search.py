@@ -1,4 +1,4 @@
-"""What a search for branches works with: the system, its scales, its frequencies, and the branches it follows."""
+"""What a search for branches works with: the system, its scales and its frequencies."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import numpy as np
 
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Floats
-from frahm.harmonic_balance.condensation import Problem, condense, unknowns
-from frahm.harmonic_balance.events import LocatedEvent, Point
+from frahm.harmonic_balance.condensation import CondensedSystem, condense, unknowns
 from frahm.harmonic_balance.found import Budget
 from frahm.harmonic_balance.quasi_static import searched_window
 from frahm.harmonic_balance.seeds import Seeder, seeder_for
@@ -20,42 +19,8 @@ from frahm.systems import System
 GOAL = 1e-8
 _ROUGH_GOAL = 1e-6  # with stops or friction, whose force harmonics fall off slowly
 _AUTO_HARMONICS = 101
+LOWEST = 0.02  # of the lower edge of the window: branches are not followed below
 _SCALE_FREQUENCIES = 17
-
-
-@dataclass
-class Track:
-    """One branch as it was followed: points, tangents, harmonics, and what they mean.
-
-    columns are Omega, |X1|, |Z1|, max |x|, max |z|; multipliers those of the (half) map, by descending modulus; births
-    are losses of symmetry outside the window, from where an asymmetric branch may come into it.
-    """
-
-    odd: bool
-    ys: Floats
-    ts: Floats
-    Hs: np.ndarray
-    truncations: Floats
-    columns: Floats
-    multipliers: np.ndarray
-    closed: bool
-    endings: tuple[int, ...]
-    events: list[LocatedEvent] = field(default_factory=list)
-    event_points: list[tuple[Floats, Floats, int] | None] = field(default_factory=list)
-    births: list[tuple[LocatedEvent, Point]] = field(default_factory=list)
-    parent: Track | None = None
-    meets: list[Track] = field(default_factory=list)
-
-    @property
-    def pieces(self) -> np.ndarray:
-        """Number of the piece inside the window every point belongs to."""
-        same = self.frequency[:-1] == self.frequency[1:]
-        return np.concatenate([[0], np.cumsum(same)]).astype(int)
-
-    @property
-    def frequency(self) -> Floats:
-        """Omega at every point [rad/s]."""
-        return self.columns[:, 0]
 
 
 @dataclass(frozen=True)
@@ -63,7 +28,7 @@ class Search:
     """What a search over one window works with."""
 
     system: System
-    problem: Problem
+    problem: CondensedSystem
     seeder: Seeder
     variation: Variation
     lo: float
@@ -98,14 +63,7 @@ class Search:
         return unknowns(self.problem, self.highest, odd) + 1
 
 
-def away_from_turns(search: Search, track: Track) -> int:
-    """The point of a branch in the window where Omega changes most along it: a good one to solve anew at its Omega."""
-    rise = np.abs(track.ts[np.arange(len(track.Hs)), unknowns(search.problem, track.Hs, track.odd)])
-    inside = (track.frequency >= search.lo) & (track.frequency <= search.hi)
-    return int(np.argmax(np.where(inside, rise, -1.0)))
-
-
-def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None) -> Search:
+def search_over(system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None) -> Search:
     """Condense the system and set the scales of the search; `forcing` is a factor over Omega, see `forcing_factor`."""
     lo, hi, unsearched = searched_window(system, lo, hi)
     pb = condense(system, forcing)
@@ -116,28 +74,14 @@ def begin(system: System, lo: float, hi: float, harmonics: int | None, forcing: 
         for seed in seeder.at(float(W), 1.0, first_only=True):
             largest = max(largest, *(float(np.max(np.abs(u))) for u in seed.harmonics.values()))
     width = hi - lo
-    outer = (max(lo - width, 0.02 * lo), hi + width)
+    outer = (max(lo - width, LOWEST * lo), hi + width)
     scale = largest or 1.0
     variation = variation_of(system, *_strongest(pb, scale, hi)) if system.size > 3 else variation_of(system)
     return Search(system, pb, seeder, variation, lo, hi, outer, scale, width, harmonics, unsearched)
 
 
-def _strongest(pb: Problem, scale: float, hi: float) -> tuple[float, float]:
+def _strongest(pb: CondensedSystem, scale: float, hi: float) -> tuple[float, float]:
     """Largest slope of the elements [N/m] at the largest amplitude expected, and the frequency [rad/s]."""
     z = scale * np.linspace(-1.0, 1.0, 201)
     slopes = [law_force_and_slopes(*row, pb.table, value, 0.0)[1] for row in pb.codes for value in z]
     return float(np.max(np.abs(slopes))), hi
-
-
-def connected(tracks: list[Track]) -> list[Track]:
-    """Branches that hang together with the first one, directly or through others."""
-    found: list[Track] = []
-    waiting = tracks[:1]
-    while waiting:
-        track = waiting.pop()
-        if any(track is other for other in found):
-            continue
-        found.append(track)
-        waiting += [other for other in tracks if other.parent is track or other is track.parent]
-        waiting += track.meets
-    return found

@@ -17,16 +17,15 @@ import numpy as np
 
 from frahm.absorbers.packed import law_force_and_slopes
 from frahm.arrays import Complexes, Floats
-from frahm.harmonic_balance.condensation import Problem, stiffness_at, stiffness_over, unknowns
-from frahm.harmonic_balance.describing import Table, amplitude_table, outer_balances
+from frahm.harmonic_balance.condensation import CondensedSystem, stiffness_at, stiffness_over, unknowns
+from frahm.harmonic_balance.describing import AmplitudeTable, amplitude_table, outer_balances
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.shared_drive import shared_stiffnesses, solutions_at
-from frahm.polynomials import cubic_roots
+from frahm.polynomials import REAL, cubic_roots
 
 _STARTS = 48
 _TWO_HARMONIC_STARTS = 16
 _ROUNDING = 1e-9
-_REAL = 1e-7  # imaginary part of a root that is real but for rounding, relative
 _SAME = 1e-6  # relative difference of two solutions that are one
 _NOTHING = 1e-12  # of the scale: solutions that are all but zero are one
 
@@ -57,7 +56,7 @@ class Extreme:
         return int(np.argmax(np.abs(self.harmonics[1])))
 
 
-def spring_polynomial(pb: Problem) -> Floats | None:
+def spring_polynomial(pb: CondensedSystem) -> Floats | None:
     """Coefficients e_i of k(N) = sum_i e_i N^i, equivalent stiffness at N = |U|^2, of the odd polynomials at u = U."""
     if pb.directions.shape[0] != 1 or pb.degree == 0 or not pb.odd:
         return None
@@ -77,11 +76,11 @@ def amplitude_roots(S: complex, F: complex, e: Floats) -> Floats:
     real = np.polynomial.Polynomial([S.real + e[0], *e[1:]])
     polynomial = np.polynomial.Polynomial([0, 1]) * (real * real + S.imag**2) - abs(F) ** 2
     roots = polynomial.trim().roots()
-    keep = (np.abs(roots.imag) < _REAL * np.abs(roots)) & (roots.real > 0)
+    keep = (np.abs(roots.imag) < REAL * np.abs(roots)) & (roots.real > 0)
     return np.sort(roots[keep].real)
 
 
-def single_element_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
+def single_element_seeds(pb: CondensedSystem, W: float, e: Floats) -> list[Seed]:
     """All first-harmonic roots at one frequency, and those with a large free third harmonic beside each of them."""
     S, F = stiffness_at(pb, 1, W)
     S3, _ = stiffness_at(pb, 3, W)
@@ -103,7 +102,7 @@ def third_harmonics(S3: complex, Z: complex, e: Floats) -> list[complex]:
     return [drive / (shifted + k * N) for N in roots[:count]] if count > 1 else []
 
 
-def two_harmonic_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
+def two_harmonic_seeds(pb: CondensedSystem, W: float, e: Floats) -> list[Seed]:
     """Solutions with harmonics 1 and 3 of one element, searched by Newton's method from a fixed spread of starts.
 
     Where the third harmonic is strong it changes the first, and solutions exist that no first-harmonic root leads to.
@@ -126,7 +125,7 @@ def two_harmonic_seeds(pb: Problem, W: float, e: Floats) -> list[Seed]:
     return [Seed(W, {1: u[:1], 3: u[1:]}) for u in found]
 
 
-def searched_seeds(pb: Problem, W: float, scale: float, odd: bool) -> list[Seed]:
+def searched_seeds(pb: CondensedSystem, W: float, scale: float, odd: bool) -> list[Seed]:
     """First-harmonic solutions with several elements, searched from a fixed spread set of starts.
 
     With `odd` those without a mean, otherwise with the means they come with.
@@ -169,9 +168,9 @@ def _linear(S: Complexes, F: Complexes) -> Complexes:
 class Seeder:
     """Starts at any frequency of a window: in closed form, from a table of amplitudes, or searched."""
 
-    problem: Problem
+    problem: CondensedSystem
     spring: Floats | None  # equivalent stiffness of one odd polynomial element, see `spring_polynomial`
-    table: Table | None  # of one element otherwise, or of its motions about other means
+    table: AmplitudeTable | None  # of one element otherwise, or of its motions about other means
     buckled: bool  # whether an odd system has other equilibria, wells or tops, about which it may respond
     shared: Floats | None = None  # cubic stiffnesses of several coordinates that one motion drives, see `shared_drive`
     doubtful: set[float] = field(default_factory=set)  # frequencies at which not all of their solutions were found
@@ -203,7 +202,7 @@ class Seeder:
         return [Seed(W, {1: u}) for u in found.harmonics]
 
 
-def seeder_for(pb: Problem, window: Floats) -> Seeder:
+def seeder_for(pb: CondensedSystem, window: Floats) -> Seeder:
     """Seeder of a condensed problem for frequencies spread over a window [rad/s]."""
     spring = spring_polynomial(pb)
     if pb.directions.shape[0] != 1:
@@ -225,7 +224,7 @@ def seeder_for(pb: Problem, window: Floats) -> Seeder:
     return Seeder(pb, spring, table, buckled)
 
 
-def _may_buckle(pb: Problem, W: float) -> bool:
+def _may_buckle(pb: CondensedSystem, W: float) -> bool:
     """Whether the middle, or an element by itself, may be unstable without motion.
 
     An absorber that nothing but its nonlinear spring holds has no static stiffness; its rounding is none either.

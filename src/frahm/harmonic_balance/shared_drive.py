@@ -24,7 +24,7 @@ import numpy as np
 
 from frahm.arrays import Complexes, Floats
 from frahm.compiled import kernel
-from frahm.harmonic_balance.condensation import Problem, stiffness_at, stiffness_over
+from frahm.harmonic_balance.condensation import CondensedSystem, stiffness_at, stiffness_over
 from frahm.polynomials import cubic_roots
 
 _POINTS = (192, 768, 3072)  # of an interval of y: the first, then what is tried where the degree says no
@@ -68,7 +68,7 @@ class Solutions:
     complete: bool
 
 
-def shared_stiffnesses(pb: Problem, window: Floats) -> Floats | None:
+def shared_stiffnesses(pb: CondensedSystem, window: Floats) -> Floats | None:
     """k_i (r,) where `solutions_at` finds all first-harmonic solutions at frequencies of a window; None elsewhere."""
     k = cubic_stiffnesses(pb)
     if k is None or any(shared_drive(S, F) is None for S, F in zip(*stiffness_over(pb, 1, window), strict=True)):
@@ -76,7 +76,7 @@ def shared_stiffnesses(pb: Problem, window: Floats) -> Floats | None:
     return k
 
 
-def cubic_stiffnesses(pb: Problem) -> Floats | None:
+def cubic_stiffnesses(pb: CondensedSystem) -> Floats | None:
     """k_i (r,) of cubic elements each of which moves with one coordinate; None for any other elements."""
     if pb.degree == 0 or not pb.odd or np.any(np.count_nonzero(pb.directions, axis=0) != 1):
         return None
@@ -102,7 +102,7 @@ def shared_drive(S: Complexes, F: Complexes) -> Complexes | None:
     return b if np.all(misfit <= _COUPLED * np.max(np.abs(S))) else None
 
 
-def solutions_at(pb: Problem, W: float, k: Floats) -> Solutions:
+def solutions_at(pb: CondensedSystem, W: float, k: Floats) -> Solutions:
     """All first-harmonic solutions at Omega = W [rad/s] of coordinates with the cubic stiffnesses k (r,)."""
     S, F = stiffness_at(pb, 1, W)
     b = shared_drive(S, F)

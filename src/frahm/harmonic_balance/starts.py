@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.harmonic_balance.condensation import Problem, stiffness_at, stiffness_over, unknowns
+from frahm.harmonic_balance.condensation import CondensedSystem, stiffness_at, stiffness_over, unknowns
 from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.root_counts import cubic_turns, extreme_turns, polynomial_counts, table_counts
 from frahm.harmonic_balance.search import Search
@@ -91,7 +91,7 @@ def _extremes(grid: Floats, turns: Floats, means: Floats | None, odd: bool = Tru
     return found
 
 
-def _with_third_harmonics(pb: Problem, e: Floats, found: list[Extreme]) -> list[Extreme]:
+def _with_third_harmonics(pb: CondensedSystem, e: Floats, found: list[Extreme]) -> list[Extreme]:
     """Extremes, with every free third harmonic beside each."""
     free = []
     for extreme in found:

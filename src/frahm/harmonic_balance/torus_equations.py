@@ -6,13 +6,20 @@ The Hill matrix is singular at the exponent i nu, written as one complex scalar.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from frahm.arrays import Complexes, Floats
-from frahm.harmonic_balance.equations import Change, Equations, Orbit, of_first, stiffness_and_slope
+from frahm.harmonic_balance.equations import (
+    Change,
+    Equations,
+    Linearisation,
+    of_first,
+    row_weights,
+    stiffness_and_slope,
+)
 
 
 @dataclass
@@ -22,7 +29,13 @@ class TorusEquations(Equations):
     The disturbance e^{i nu t} sum_k v_k e^{ik Omega t} uses the harmonics -H ... H of the orbit's parity.
     """
 
-    border: tuple[Complexes, Complexes] | None = None
+    border: tuple[Complexes, Complexes] = field(init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        A, _ = self._hill(self.orbit(self.start), float(self.start[self.n + 2] * self.frequency))
+        left, _, right = np.linalg.svd(row_weights(A)[:, None] * A)
+        self.border = left[:, -1], right[-1].conj()
 
     @property
     def waves(self) -> np.ndarray:
@@ -37,10 +50,7 @@ class TorusEquations(Equations):
         orbit = self.orbit(y)
         nu = float(y[n + 2] * self.frequency)
         A, parts = self._hill(orbit, nu)
-        weight = 1.0 / np.max(np.abs(A), axis=1)
-        if self.border is None:
-            left, _, right = np.linalg.svd(weight[:, None] * A)
-            self.border = left[:, -1], right[-1].conj()
+        weight: Any = row_weights(A)
         b, c = self.border
         M = np.block([[weight[:, None] * A, b[:, None]], [c.conj()[None], np.zeros((1, 1))]])
         unit = np.zeros(len(A) + 1)
@@ -62,7 +72,7 @@ class TorusEquations(Equations):
         rows = np.max(np.abs(J), axis=1)
         return R / rows, J / rows[:, None]
 
-    def _hill(self, orbit: Orbit, nu: float) -> tuple[Complexes, list[tuple[Complexes, Complexes]]]:
+    def _hill(self, orbit: Linearisation, nu: float) -> tuple[Complexes, list[tuple[Complexes, Complexes]]]:
         """Hill's matrix at the exponent i nu, and (S, dS/ds) at every wave."""
         pb = orbit.problem
         parts = [stiffness_and_slope(pb, 1j * (nu + k * orbit.W))[:2] for k in self.waves]
@@ -71,11 +81,11 @@ class TorusEquations(Equations):
             A = A + self._slopes(orbit, orbit.derivatives[1]) * self._per_wave(1j * (nu + self.waves * orbit.W), orbit)
         return A, parts
 
-    def _per_wave(self, factors: Any, orbit: Orbit) -> Any:
+    def _per_wave(self, factors: Any, orbit: Linearisation) -> Any:
         """Row of a factor for every entry of a disturbance."""
         return np.repeat(factors, orbit.problem.M11.shape[0])
 
-    def _slopes(self, orbit: Orbit, slopes: Floats) -> Complexes:
+    def _slopes(self, orbit: Linearisation, slopes: Floats) -> Complexes:
         """Matrix of P_{k-l} for slopes (E, N) along the orbit."""
         D, E = orbit.problem.directions, self._waves_in_time()
         blocks = [np.einsum("aj,j,bj->ab", E.conj(), slope, E) / slope.size for slope in slopes]
@@ -86,7 +96,7 @@ class TorusEquations(Equations):
         tau = (math.pi if self.odd else 2 * math.pi) * np.arange(N) / N
         return np.asarray(np.exp(1j * self.waves[:, None] * tau))
 
-    def _by_orbit(self, orbit: Orbit, nu: float, v: Complexes, w: Complexes) -> Complexes:
+    def _by_orbit(self, orbit: Linearisation, nu: float, v: Complexes, w: Complexes) -> Complexes:
         """-w A_X v over the orbit's unknowns (n,)."""
         D, E = orbit.problem.directions, self._waves_in_time()
         r = D.shape[0]
@@ -109,7 +119,9 @@ class TorusEquations(Equations):
             out[0, :, 1] = 0.0
         return out.ravel()
 
-    def _by_axis(self, orbit: Orbit, change: Change, nu: float, parts: list[tuple[Complexes, Complexes]]) -> Complexes:
+    def _by_axis(
+        self, orbit: Linearisation, change: Change, nu: float, parts: list[tuple[Complexes, Complexes]]
+    ) -> Complexes:
         """Derivative of Hill's matrix by one axis."""
         out = self._diagonal([change.block(1j * (nu + k * orbit.W), k) for k in self.waves])
         if change.law is not None:

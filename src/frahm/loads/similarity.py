@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from frahm.arrays import Floats
 from frahm.case import Case
+from frahm.case.wind import AIR_DENSITY
 from frahm.errors import check_number
 from frahm.loads.over_wind import wind_excitation
 from frahm.loads.vortex import VortexShedding, vortex_shedding
@@ -75,7 +76,9 @@ LOCK_IN_RATIOS = (1 / 1.2, 1 / 0.8)
 LOCK_IN_SOURCE = "shedding frequency within 0.8 ... 1.2 of the natural one, as in DNV-RP-C205 (quoted from memory)"
 
 
-def scruton_number(mass_per_length: float, damping_ratio: float, diameter: float, air_density: float = 1.225) -> float:
+def scruton_number(
+    mass_per_length: float, damping_ratio: float, diameter: float, air_density: float = AIR_DENSITY
+) -> float:
     """K_s = 2 m_e delta / (rho D^2) [-], delta = 2 pi zeta; also called mass damping parameter.
 
     Parameters

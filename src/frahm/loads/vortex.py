@@ -6,10 +6,9 @@ import math
 from dataclasses import dataclass
 
 from frahm.case import Case
+from frahm.case.wind import AIR_DENSITY, AIR_VISCOSITY
 from frahm.errors import ParameterError, check_number
 from frahm.loads.reynolds import EDGE, lift_curve, strouhal_curve
-
-AIR_VISCOSITY = 1.5e-5  # kinematic viscosity of air near 20 degrees Celsius [m^2/s]
 
 
 def shedding_frequency(speed: float, diameter: float, strouhal: float) -> float:
@@ -30,7 +29,7 @@ def shedding_frequency(speed: float, diameter: float, strouhal: float) -> float:
 
 
 def lift_amplitude(
-    speed: float, diameter: float, lift_coefficient: float, air_density: float = 1.225, length: float = 1.0
+    speed: float, diameter: float, lift_coefficient: float, air_density: float = AIR_DENSITY, length: float = 1.0
 ) -> float:
     """Amplitude of the harmonic lift, F_L = 1/2 C_L rho U^2 D l [N].
 

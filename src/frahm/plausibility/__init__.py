@@ -3,19 +3,10 @@
 The room is called like its verb: ``frahm.plausibility(case)`` is `frahm.plausibility.plausibility`.
 """
 
-import sys
-import types
-
+from frahm.lazy import make_callable
 from frahm.plausibility.implausible import Implausible
 from frahm.plausibility.judging import plausibility
 
 __all__ = ["Implausible", "plausibility"]
 
-
-class _Room(types.ModuleType):
-    """A module that can be called: the public name and this folder are the same attribute of frahm."""
-
-    __call__ = staticmethod(plausibility)
-
-
-sys.modules[__name__].__class__ = _Room
+make_callable(__name__, plausibility)

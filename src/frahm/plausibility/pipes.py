@@ -7,12 +7,11 @@ import re
 from collections.abc import Iterator
 
 from frahm.case import ModeTable, Pipe, Tube
+from frahm.case.tube import STEEL_DENSITY, STEEL_MODULUS
 from frahm.plausibility.implausible import Implausible, Inputs
 
-STEEL = 7850.0  # [kg/m^3]
-STEEL_MODULUS = 2.06e11  # [Pa]
 DAMPING, WET_DAMPING = (1e-4, 0.05), 0.2  # in air; at most in a liquid, which damps by itself
-MEAN_DENSITY = (30.0, 1.5 * STEEL)  # thin tubes of glass fibre ... more than solid steel [kg/m^3]
+MEAN_DENSITY = (30.0, 1.5 * STEEL_DENSITY)  # thin tubes of glass fibre ... more than solid steel [kg/m^3]
 THINNEST, STOCKIEST, SLENDEREST = 300.0, 6.0, 1000.0  # D/t, L/D, L/D
 WATER = 100.0  # a fluid denser than this is a liquid [kg/m^3]
 AIR_DENSITY = (0.6, 2.0)  # 7 km above the sea ... dry air at -90 degrees Celsius [kg/m^3]
@@ -61,7 +60,7 @@ def _mass(inputs: Inputs) -> Iterator[Implausible]:
     density, per_air = pipe.mass_per_length / area, pipe.mass_per_length / (inputs.case.wind.air_density * area)
     if MEAN_DENSITY[0] <= density <= MEAN_DENSITY[1]:
         return
-    solid = STEEL * area
+    solid = STEEL_DENSITY * area
     reason = (
         f"{pipe.mass_per_length:.4g} kg/m are {per_air:.3g} times the mass of the fluid displaced; as a solid steel"
         f" bar it would have {solid:.4g} kg/m, as a steel tube with D/t = {THINNEST:g} {4 * solid / THINNEST:.3g} kg/m."
@@ -150,7 +149,7 @@ def _stress(inputs: Inputs) -> Iterator[Implausible]:
     fatigue, pipe = inputs.case.fatigue, inputs.case.pipe
     if fatigue is None or fatigue.stress_per_displacement is None:
         return
-    tube = pipe.frequency * math.sqrt(2 * STEEL_MODULUS * STEEL)
+    tube = pipe.frequency * math.sqrt(2 * STEEL_MODULUS * STEEL_DENSITY)
     ratio = fatigue.stress_per_displacement / tube
     if not 0.02 <= ratio <= 20:
         reason = (

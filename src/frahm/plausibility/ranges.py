@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from frahm.plausibility.implausible import Implausible, Inputs
+from frahm.readable import DAY, YEAR
 from frahm.units import si_value
 
 
@@ -42,7 +43,7 @@ USUAL = (
     Usual("pipe.youngs_modulus", 5e8, 1e12, "structural steel has 2.06e11 Pa, the softest plastic pipes about 1e9 Pa.",
           ("GPa", "MPa")),
     Usual("pipe.density", 500, 2e4, "structural steel has 7850 kg/m^3, lead 11300 kg/m^3.", ("g/cm^3",)),
-    Usual("climate.duration", 86400, 200 * 365.25 * 86400, f"structures are designed for at most 200 years, {_THUMB}."),
+    Usual("climate.duration", DAY, 200 * YEAR, f"structures are designed for at most 200 years, {_THUMB}."),
     Usual("climate.weibull.scale", 2, 20, f"wind climates have scales of 3 to 15 m/s, {_THUMB}.", ("km/h", "knot")),
     Usual("climate.weibull.shape", 1, 4, f"measured winds have shapes of 1.5 to 3, {_THUMB}."),
     Usual("climate.table[].speed", 0, 70, "a hurricane of category 5 (Saffir and Simpson) begins at 70 m/s.",

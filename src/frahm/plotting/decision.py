@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frahm.plotting.lines import MM
 from frahm.plotting.style import BLUE, GREEN, GREY, INK, ORANGE, SKY, VERMILLION, legend_below, new_figure
+from frahm.tolerances import AS_LARGE
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -24,9 +26,7 @@ DEVICE_LOOKS: dict[str, tuple[str, Any, str]] = {
     "tuned mass damper": (BLUE, "-.", "^"),
     "mixed": (GREEN, (0, (5, 1.5)), "D"),
 }
-_MM = 1e3
 _DECADES = 3.5  # below the largest that are shown
-_LARGER = 1.01  # than the curve: a motion that lasts beside it
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,8 @@ def decision_figure(lasting: xr.Dataset, marks: Marks) -> Figure:
         axes.axvline(here, color=INK, linewidth=0.8, linestyle=(0, (1, 1.5)), label="design wind")
     for number, name in enumerate(lasting["device"].attrs["names"].split(", ")):
         _draw_device(axes, lasting.isel(point=device == number), axis, name)
-    top = _MM * max(float(lasting["pipe_peak"].max()), float(np.nan_to_num(lasting["searched_pipe_peak"]).max()))
-    lowest = _MM * float(lasting["pipe_peak"].min())
+    top = MM * max(float(lasting["pipe_peak"].max()), float(np.nan_to_num(lasting["searched_pipe_peak"]).max()))
+    lowest = MM * float(lasting["pipe_peak"].min())
     axes.set_yscale("log")
     axes.set_ylim(max(0.8 * lowest, top * 10**-_DECADES), 1.6 * top)
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -91,11 +91,11 @@ def _draw_device(axes: Any, curve: xr.Dataset, axis: str, name: str) -> None:
     label = DEVICES[name]
     for part in np.unique(curve["part"].values):
         one = curve.isel(point=curve["part"].values == part)
-        axes.plot(one[axis].values, _MM * one["pipe_peak"].values, color=color, linestyle=style, label=label)
+        axes.plot(one[axis].values, MM * one["pipe_peak"].values, color=color, linestyle=style, label=label)
         label = "_"
-    beside = curve["searched_pipe_peak"].values > _LARGER * curve["pipe_peak"].values
+    beside = curve["searched_pipe_peak"].values > AS_LARGE * curve["pipe_peak"].values
     if beside.any():
         axes.plot(
-            curve[axis].values[beside], _MM * curve["searched_pipe_peak"].values[beside], marker, color=color,
+            curve[axis].values[beside], MM * curve["searched_pipe_peak"].values[beside], marker, color=color,
             markersize=4, linestyle="none", label=f"{DEVICES[name]}: another motion lasts",
         )  # fmt: skip

@@ -11,6 +11,7 @@ from frahm.arrays import Floats
 from frahm.plotting.panels import name_panels, panels
 from frahm.plotting.plain import PlainFigure
 from frahm.plotting.style import BARE, PIPE, SINK, UNSTABLE_DASHES, decade_axis
+from frahm.units import MPA
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 SPEED_LABEL = "wind speed [m/s]"
 DECADES = 7.0  # of damage that are shown: what lies lower adds nothing
-_MPA = 1e6
 _BARE_LOOK: dict[str, Any] = {"color": BARE, "linestyle": ":", "linewidth": 1.6}
 _MARKS = {"periodic": "o", "quasi-periodic": "D", "chaotic": "s", "unsettled": "x", "linear": ""}
 
@@ -33,7 +33,7 @@ def fatigue_figure(damage: xr.Dataset) -> Figure:
         upper.stairs(per_speed(damage, name), edges, baseline=None, label=label, **look)
     upper.set(yscale="log", ylabel="damage per wind speed [s/m]", ylim=damage_range(damage))
     decade_axis(upper.yaxis)
-    without = damage["stress_range_without"].values / _MPA
+    without = damage["stress_range_without"].values / MPA
     lower.stairs(
         np.where(np.isfinite(without), without, np.nan), edges, baseline=None, label="without absorbers", **_BARE_LOOK
     )
@@ -57,7 +57,7 @@ def fatigue_plot(damage: xr.Dataset) -> PlainFigure:
         line = {"color": look["color"], "dash": dashes[name], "shape": "hv"}
         values = per_speed(damage, name)
         figure.add_scatter(x=edges, y=np.append(values, values[-1:]), mode="lines", line=line, name=label, row=1)
-    ranges = damage["stress_range_without"].values / _MPA
+    ranges = damage["stress_range_without"].values / MPA
     line = {"color": BARE, "dash": "dot", "shape": "hv"}
     figure.add_scatter(
         x=edges, y=np.append(ranges, ranges[-1:]), mode="lines", line=line, showlegend=False, row=2,
@@ -66,7 +66,7 @@ def fatigue_plot(damage: xr.Dataset) -> PlainFigure:
     if has_absorber(damage):
         kinds = damage["kind"].attrs["kinds"].split(", ")
         figure.add_scatter(
-            x=damage["speed"].values, y=damage["stress_range_with"].values / _MPA, mode="lines+markers",
+            x=damage["speed"].values, y=damage["stress_range_with"].values / MPA, mode="lines+markers",
             line={"color": PIPE, "width": 1}, showlegend=False, name="worst motion", row=2,
             text=[readable.motion(kinds[code]) for code in damage["kind"].values],
             hovertemplate="%{x:.3f} m/s<br>%{y:.3g} MPa<br>%{text}",
@@ -122,7 +122,7 @@ def _lines(damage: xr.Dataset) -> list[tuple[str, str, dict[str, Any]]]:
 
 def _draw_worst(axes: Axes, damage: xr.Dataset) -> None:
     """Stress range of the worst attractor, its kind marked."""
-    speeds, ranges = damage["speed"].values, damage["stress_range_with"].values / _MPA
+    speeds, ranges = damage["speed"].values, damage["stress_range_with"].values / MPA
     ranges = np.where(np.isfinite(ranges), ranges, np.nan)
     axes.plot(speeds, ranges, "-", color=PIPE, linewidth=0.8, label="with absorbers, worst motion")
     kinds = damage["kind"].attrs["kinds"].split(", ")

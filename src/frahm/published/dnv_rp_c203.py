@@ -14,11 +14,11 @@ from numpy.typing import ArrayLike
 
 from frahm.arrays import Floats
 from frahm.errors import check_choice, check_number
+from frahm.units import MPA
 
 SOURCE = "DNV-RP-C203 (April 2016), Table 2-1, S-N curves in air, as reproduced in the notebook of fatpack"
 KNEE_CYCLES = 1e7
 REFERENCE_THICKNESS = 0.025  # [m], secondary; 0.016 for tubular joints, secondary
-_MPA = 1e6
 _HIGH_CONCENTRATION = 10.0  # above it the T curve takes the exponent .30, secondary
 
 
@@ -50,10 +50,10 @@ class SNCurve:
 
     def cycles(self, stress_range: ArrayLike) -> Floats:
         """Cycles to failure N [-] of stress ranges [Pa], any shape; infinite for a range of zero."""
-        S = np.asarray(stress_range, dtype=float) / _MPA
+        S = np.asarray(stress_range, dtype=float) / MPA
         with np.errstate(divide="ignore"):
             upper, lower = 10**self.log_a1 * S**-self.m1, 10**self.log_a2 * S**-self.m2
-        return np.where(self.limit <= S * _MPA, upper, lower)
+        return np.where(self.limit <= S * MPA, upper, lower)
 
     def thickness_factor(
         self, thickness: float, reference: float = REFERENCE_THICKNESS, concentration: float = 1.0
@@ -74,7 +74,7 @@ class SNCurve:
 
 
 def _curve(name: str, m1: float, log_a1: float, log_a2: float, limit: float, k: float) -> SNCurve:
-    return SNCurve(name, m1, log_a1, 5.0, log_a2, limit * _MPA, k)
+    return SNCurve(name, m1, log_a1, 5.0, log_a2, limit * MPA, k)
 
 
 SN_CURVES = {

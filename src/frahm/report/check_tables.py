@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from frahm.analysis import Analysis
+from frahm.analysis import CaseAnalysis
 from frahm.report.numbers import number
 from frahm.report.places import over_wind, place_head
 
@@ -19,12 +19,12 @@ _SETTINGS = {
 }
 
 
-def comparison_head(analysis: Analysis) -> list[str]:
+def comparison_head(analysis: CaseAnalysis) -> list[str]:
     """Column heads of `comparison_rows`."""
     return [place_head(analysis), *(head for head, _, _ in _comparisons(analysis))]
 
 
-def comparison_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def comparison_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Peaks by three methods and their differences, response by response, in order of the detuning."""
     if "cross_check" not in analysis.data:
         return []
@@ -34,7 +34,7 @@ def comparison_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     return list(zip([number(float(place)) for place in places], *columns, strict=True))
 
 
-def _comparisons(analysis: Analysis) -> list[tuple[str, str, Callable[[float], str]]]:
+def _comparisons(analysis: CaseAnalysis) -> list[tuple[str, str, Callable[[float], str]]]:
     """Head, variable and form of every column that is there."""
     columns: list[tuple[str, str, Callable[[float], str]]] = []
     for name, text in (("pipe", "Pipe"), ("relative", "Stroke")):
@@ -47,12 +47,12 @@ def _comparisons(analysis: Analysis) -> list[tuple[str, str, Callable[[float], s
     return [column for column in columns if column[1] in analysis.data["cross_check"]]
 
 
-def check_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
+def check_rows(analysis: CaseAnalysis) -> list[tuple[str, str, str, str]]:
     """Name, status, its sign in words, detail of every check."""
     return [(check.name, check.status, _MARKS[check.status], check.detail) for check in analysis.checks]
 
 
-def provenance_rows(analysis: Analysis) -> list[tuple[str, str]]:
+def provenance_rows(analysis: CaseAnalysis) -> list[tuple[str, str]]:
     """Versions, seed and tolerances: name and value."""
     found, settings = analysis.results["provenance"], analysis.case.analysis
     rows = [("frahm", analysis.version), *found["versions"].items()]

@@ -6,18 +6,18 @@ import math
 from typing import Any
 
 from frahm import readable
-from frahm.analysis import Analysis
+from frahm.analysis import CaseAnalysis
 from frahm.report.numbers import number
+from frahm.units import MPA
 
 BIN_HEAD = [
     "Wind [m/s]", "Frequency [Hz]", "Share of the time", "Stress range with [MPa]", "without [MPa]", "Motion",
     "Attractors", "Damage with", "weighted", "without",
 ]  # fmt: skip
-_MPA = 1e6
 _CASE, _COMPUTED = "given in the case", "computed"
 
 
-def method_sentence(analysis: Analysis) -> str:
+def method_sentence(analysis: CaseAnalysis) -> str:
     """What was counted and how."""
     found = _found(analysis)
     low, high = found["wind_speeds"]
@@ -29,7 +29,7 @@ def method_sentence(analysis: Analysis) -> str:
     )
 
 
-def damage_rows(analysis: Analysis) -> list[tuple[str, str, str]]:
+def damage_rows(analysis: CaseAnalysis) -> list[tuple[str, str, str]]:
     """Name, value with, value without absorbers."""
     found = _found(analysis)
     factor = number(found["design_fatigue_factor"])
@@ -45,7 +45,7 @@ def damage_rows(analysis: Analysis) -> list[tuple[str, str, str]]:
     ]  # fmt: skip
 
 
-def detail_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
+def detail_rows(analysis: CaseAnalysis) -> list[tuple[str, str, str, str]]:
     """Quantity, value, unit, standing."""
     found, stay = _found(analysis), _found(analysis)["persistence"]
     attributes = analysis.data["fatigue"].attrs
@@ -67,7 +67,7 @@ def detail_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
     return rows
 
 
-def bin_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def bin_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Every wind bin."""
     data = analysis.data["fatigue"]
     kinds = data["kind"].attrs["kinds"].split(", ")
@@ -87,7 +87,7 @@ def bin_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     return rows
 
 
-def _found(analysis: Analysis) -> dict[str, Any]:
+def _found(analysis: CaseAnalysis) -> dict[str, Any]:
     return dict(analysis.results["fatigue"])
 
 
@@ -100,4 +100,4 @@ def _life(value: float | None) -> str:
 
 
 def _stress(value: float | None) -> str:
-    return "unbounded" if value is None or value == float("inf") else number(float(value) / _MPA, 3)
+    return "unbounded" if value is None or value == float("inf") else number(float(value) / MPA, 3)

@@ -12,6 +12,7 @@ from markupsafe import Markup
 from frahm.files import write_text
 from frahm.loads import amplitude_estimates, lock_in_band
 from frahm.plotting.members import save_member_figures
+from frahm.readable import YEAR
 from frahm.report.environment import kept_together, template, with_indices
 from frahm.report.numbers import number
 from frahm.report.references import Reference, reference_rows
@@ -30,7 +31,6 @@ INPUT_HEAD = [
     "DFF", "Life [years]", "Row",
 ]  # fmt: skip
 CRITERION_HEAD = ["Criterion", "It expects vibration for", "Yes", "No", "Not decided", "Standing"]
-_YEAR = 365.25 * 86400.0
 _UNKNOWN = "-"
 
 
@@ -122,7 +122,7 @@ def _input_row(row: Row) -> tuple[str, ...]:
         row["ends"], number(100 * row["damping_ratio"], 3), number(row["mass_per_length"], 4),
         _span(*row["site_winds"]), str(row["mode_count"]),
         *(_UNKNOWN if fatigue is None else number(fatigue.get(name, _UNKNOWN)) for name in detail),
-        _UNKNOWN if climate is None else number(climate["duration"] / _YEAR), row["place"].rpartition(":")[2],
+        _UNKNOWN if climate is None else number(climate["duration"] / YEAR), row["place"].rpartition(":")[2],
     )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from frahm import readable
-from frahm.analysis import Analysis
+from frahm.analysis import CaseAnalysis
 from frahm.errors import Outcome
 from frahm.loads import vortex_shedding
 from frahm.report.places import at, place_head, where
@@ -17,13 +17,13 @@ ATTRACTOR_HEAD = [
 ]  # fmt: skip
 
 
-def motion_head(analysis: Analysis) -> list[str]:
+def motion_head(analysis: CaseAnalysis) -> list[str]:
     """Column heads of `motion_rows`."""
     head = [place_head(analysis), "Why here", "Kind", "Pipe peak [mm]", "Smallest peak [mm]", "Pipe rms [mm]"]
     return [*head, *(("Stroke [mm]", "Without absorber [mm]", "Ratio") if analysis.results["has_absorber"] else ())]
 
 
-def motion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def motion_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Place, reason, kind, largest and smallest peak and rms of every motion; stroke and what absorbers change."""
     rows: list[tuple[str, ...]] = []
     for motion in analysis.results.get("motions", []):
@@ -45,7 +45,7 @@ def _ended(motion: Mapping[str, Any]) -> str:
     return kind if outcome.ok else f"{kind}: {outcome.value}"
 
 
-def attractor_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def attractor_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Kind, peaks, envelope, basin fraction with its interval, and whether the motion from rest ends there."""
     return [
         (
@@ -57,7 +57,7 @@ def attractor_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     ]  # fmt: skip
 
 
-def coexisting_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def coexisting_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Place, kind, peaks and basin of every attractor at frequencies of the range that have several."""
     return [
         (
@@ -78,7 +78,7 @@ def _basin(found: dict[str, Any]) -> tuple[str, str, str]:
     )
 
 
-def basin_caption(analysis: Analysis) -> str:
+def basin_caption(analysis: CaseAnalysis) -> str:
     """What the basin map shows, and where."""
     mapped, design = analysis.results["basin_map"], vortex_shedding(analysis.case).detuning
     here = math.isclose(mapped["detuning"], design, rel_tol=1e-9)
@@ -89,7 +89,7 @@ def basin_caption(analysis: Analysis) -> str:
     )
 
 
-def worst_sentence(analysis: Analysis) -> str:
+def worst_sentence(analysis: CaseAnalysis) -> str:
     """Where the worst attractor over the window is, as a sentence; empty if it was not searched."""
     worst = analysis.results.get("worst_case")
     if worst is None:

@@ -7,17 +7,17 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from frahm import readable
-from frahm.analysis import Analysis
+from frahm.analysis import CaseAnalysis
 from frahm.report.numbers import number
 
 
-def over_wind(analysis: Analysis) -> bool:
+def over_wind(analysis: CaseAnalysis) -> bool:
     """Whether the case was asked about winds, each with its own lift."""
     curve = analysis.data.get("response", analysis.data.get("without_absorber"))
     return curve is not None and "wind_speed" in curve
 
 
-def place_head(analysis: Analysis) -> str:
+def place_head(analysis: CaseAnalysis) -> str:
     """Head of the column that says where something is."""
     return "Wind [m/s]" if over_wind(analysis) else "\N{GREEK SMALL LETTER SIGMA} [rad/s]"
 

@@ -13,7 +13,7 @@ import numpy as np
 from markupsafe import Markup
 
 from frahm import readable
-from frahm.analysis import FORCE_MARGIN, Analysis, margin_sentence
+from frahm.analysis import FORCE_MARGIN, CaseAnalysis, margin_sentence
 from frahm.errors import ParameterError
 from frahm.files import write_text
 from frahm.plotting.fatigue import fatigue_plot
@@ -44,7 +44,7 @@ _LONG_COORDINATE = re.compile(r"(\.\d)\d+")
 _PATH = re.compile(r' d="[^"]*"')
 
 
-def write_report(analysis: Analysis, folder: str | Path) -> Path:
+def write_report(analysis: CaseAnalysis, folder: str | Path) -> Path:
     """Draw the figures into `folder`/figures and render the report beside them; return the path of the report.
 
     Raises
@@ -75,12 +75,12 @@ def figures_folder(folder: str | Path) -> Path:
     return figures
 
 
-def render_report(analysis: Analysis, images: dict[str, str]) -> str:
+def render_report(analysis: CaseAnalysis, images: dict[str, str]) -> str:
     """Return the report as HTML text with everything it needs inside.
 
     Parameters
     ----------
-    analysis : Analysis
+    analysis : CaseAnalysis
         What is reported.
     images : dict of str
         Figures by name as SVG text: for paper, and for readers without JavaScript.
@@ -111,7 +111,7 @@ def render_report(analysis: Analysis, images: dict[str, str]) -> str:
     )
 
 
-def _head(analysis: Analysis) -> dict[str, Any]:
+def _head(analysis: CaseAnalysis) -> dict[str, Any]:
     """What the page that decides is made of."""
     results = analysis.results
     found, sentence = results["acceptance"], results["acceptance"]["sentence"]
@@ -138,7 +138,7 @@ def margin_of(results: dict[str, Any]) -> str:
     return margin_sentence(exact.get("detached_curve_margin"))
 
 
-def _plots(analysis: Analysis, views: list[MotionView]) -> dict[str, Markup]:
+def _plots(analysis: CaseAnalysis, views: list[MotionView]) -> dict[str, Markup]:
     """Interactive figures as JSON, by the same names as the figures on paper."""
     data, results = analysis.data, analysis.results
     figures: dict[str, PlainFigure] = {}

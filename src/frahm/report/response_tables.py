@@ -6,18 +6,18 @@ import math
 from typing import Any
 
 from frahm import readable
-from frahm.analysis import Analysis
+from frahm.analysis import CaseAnalysis
 from frahm.report.numbers import number
 from frahm.report.places import place_head, span, where
 
 
-def special_point_head(analysis: Analysis) -> list[str]:
+def special_point_head(analysis: CaseAnalysis) -> list[str]:
     """Column heads of `special_point_rows`."""
     place = place_head(analysis)
     return ["Label", "Kind", place, "Frequency [Hz]", "Pipe peak [mm]", "Stroke [mm]", "Branch", "Status"]
 
 
-def special_point_rows(analysis: Analysis, method: str = "harmonic-balance") -> list[tuple[str, ...]]:
+def special_point_rows(analysis: CaseAnalysis, method: str = "harmonic-balance") -> list[tuple[str, ...]]:
     """Label, kind, place, frequency in Hz, pipe peak, stroke, branch, status of every special point."""
     from frahm.plotting.lines import KIND_NAMES, special_marks
 
@@ -45,7 +45,7 @@ def has_asymmetric(results: dict[str, Any]) -> bool:
     return any(branch["asymmetric"] for branch in branches)
 
 
-def branch_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def branch_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Number, kind, range of wind or detuning, largest pipe peak, stability of every branch of the exact response."""
     found = analysis.results.get("response", {}).get("harmonic-balance", {})
     return [
@@ -60,7 +60,7 @@ def branch_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     ]
 
 
-def modulated_sentence(analysis: Analysis) -> str:
+def modulated_sentence(analysis: CaseAnalysis) -> str:
     """Where modulated responses are stable and coexist with periodic ones, as sentences; empty if there are none."""
     found = analysis.results.get("modulated")
     if not found or not found["ranges"]:
@@ -78,7 +78,7 @@ def _ranges_text(ranges: list[list[float]]) -> str:
     return " and ".join(f"{number(lo)} … {number(hi)}" for lo, hi in ranges)
 
 
-def other_mode_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def other_mode_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Mode, natural frequency, range, peak, wind, stress range and standing of what else the wind excites."""
     return [
         (
@@ -91,7 +91,7 @@ def other_mode_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     ]  # fmt: skip
 
 
-def manifold_rows(analysis: Analysis) -> list[tuple[str, str, str]]:
+def manifold_rows(analysis: CaseAnalysis) -> list[tuple[str, str, str]]:
     """Folds and ceilings of the slow manifold: name, value, unit."""
     manifold = analysis.results.get("slow_manifold")
     if manifold is None:

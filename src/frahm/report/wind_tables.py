@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from frahm import readable
-from frahm.analysis import Analysis
+from frahm.analysis import CaseAnalysis
 from frahm.report.numbers import number
 
 
-def similarity_rows(analysis: Analysis) -> list[tuple[str, str]]:
+def similarity_rows(analysis: CaseAnalysis) -> list[tuple[str, str]]:
     """Name and value of every similarity number."""
     found = analysis.results["wind"]
     band = found["lock_in_band"]
@@ -25,7 +25,7 @@ def similarity_rows(analysis: Analysis) -> list[tuple[str, str]]:
     ]
 
 
-def criterion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def criterion_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Name, condition, verdict, evidence and standing of every onset criterion."""
     words = {True: "yes", False: "no", None: "not decided"}
     return [
@@ -34,7 +34,7 @@ def criterion_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     ]
 
 
-def estimate_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def estimate_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Name, ratio, amplitude, what went in and standing of every amplitude estimate."""
     return [
         (row["name"], number(row["ratio"], 3), readable.in_mm(row["amplitude"]), row["detail"], row["standing"])
@@ -42,7 +42,7 @@ def estimate_rows(analysis: Analysis) -> list[tuple[str, ...]]:
     ]
 
 
-def estimate_sentence(analysis: Analysis) -> str:
+def estimate_sentence(analysis: CaseAnalysis) -> str:
     """The interval of the estimates beside the computed amplitude."""
     found = analysis.results["wind"]
     low, high, computed = (readable.in_mm(value) for value in (*found["interval"], found["computed"]))
@@ -52,13 +52,13 @@ def estimate_sentence(analysis: Analysis) -> str:
     return f"The estimates span {low} … {high} mm; {used}."
 
 
-def load_cycle_row(analysis: Analysis) -> tuple[str, ...]:
+def load_cycle_row(analysis: CaseAnalysis) -> tuple[str, ...]:
     """Name, number, what went in and standing of the number of load cycles at resonance."""
     found = analysis.results["wind"]["load_cycles"]
     return "EN 1991-1-4, load cycles at resonance", number(found["number"], 3), found["detail"], found["standing"]
 
 
-def unsteady_rows(analysis: Analysis) -> list[tuple[str, ...]]:
+def unsteady_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     """Quantity, value with absorbers and value without; one value if there are none."""
     found = analysis.results["unsteady_wind"]
     gusts = found["reduction_by_gusts"]

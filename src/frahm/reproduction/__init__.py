@@ -2,6 +2,6 @@
 
 from frahm.reproduction.claims import judge_claims
 from frahm.reproduction.computations import Computations
-from frahm.reproduction.judging import Judgement, Verdict
+from frahm.reproduction.judging import ClaimVerdict, Judgement
 
-__all__ = ["Computations", "Judgement", "Verdict", "judge_claims"]
+__all__ = ["ClaimVerdict", "Computations", "Judgement", "judge_claims"]

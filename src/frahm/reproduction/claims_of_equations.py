@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from frahm.reproduction.judging import Finding, Judgement, Verdict
+from frahm.reproduction.judging import ClaimVerdict, Finding, Judgement
 from frahm.slow_flow.print_check import ExpressionJudgement, TermJudgement
 
 _METHOD = "every term compared with the equation derived from the equations of motion, by computer algebra"
@@ -18,7 +18,7 @@ def equation_judgement(whole: ExpressionJudgement) -> Judgement:
         figure=place,
         claim=f"{place}, {whole.expression}, as printed.",
         findings=(_count(whole), *(_wrong_term(number, term) for number, term in enumerate(wrong, start=1))),
-        verdict=Verdict.MISPRINT if wrong else Verdict.REPRODUCED,
+        verdict=ClaimVerdict.MISPRINT if wrong else ClaimVerdict.REPRODUCED,
         method=_METHOD,
         explanation="; ".join(_sentence(term) for term in wrong) or "Every printed term agrees with the derivation.",
     )

@@ -12,7 +12,7 @@ from frahm.published.yang2022 import Claim, PrintedValue
 Computed = float | bool | str
 
 
-class Verdict(enum.Enum):
+class ClaimVerdict(enum.Enum):
     """What became of a claim."""
 
     REPRODUCED = "reproduced"
@@ -104,7 +104,7 @@ class Judgement:
         What the paper says.
     findings : tuple of Finding
         Every printed number and statement of it.
-    verdict : Verdict
+    verdict : ClaimVerdict
     method, explanation : str
         How it was computed, and what was found.
     beside : tuple of Beside
@@ -117,7 +117,7 @@ class Judgement:
     figure: str
     claim: str
     findings: tuple[Finding, ...]
-    verdict: Verdict
+    verdict: ClaimVerdict
     method: str
     explanation: str
     beside: tuple[Beside, ...] = ()
@@ -131,12 +131,12 @@ def judge(claim: Claim, evidence: Evidence) -> Judgement:
     of the same unit are tried in exchanged order: if everything agrees then, the print has exchanged them.
     """
     findings = _findings(claim, claim.printed, evidence)
-    verdict = Verdict.REPRODUCED if _agree(findings) else Verdict.NOT_REPRODUCED
+    verdict = ClaimVerdict.REPRODUCED if _agree(findings) else ClaimVerdict.NOT_REPRODUCED
     sentences = [_outcome(findings)]
-    if verdict is Verdict.NOT_REPRODUCED:
+    if verdict is ClaimVerdict.NOT_REPRODUCED:
         for first, second in _exchangeable(claim):
             if _agree(_findings(claim, _exchanged(claim.printed, first, second), evidence)):
-                verdict = Verdict.MISPRINT
+                verdict = ClaimVerdict.MISPRINT
                 sentences.append(_exchange_sentence(first, second))
     return Judgement(
         id=claim.id,

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from frahm.published import yang2022
-from frahm.reproduction.judging import Beside, Computed, Finding, Judgement, Verdict
+from frahm.reproduction.judging import Beside, ClaimVerdict, Computed, Finding, Judgement
 from frahm.slow_flow.print_check import ExpressionJudgement, judgement_rows
 
 
@@ -77,7 +77,7 @@ def split(judgements: Sequence[Judgement]) -> tuple[list[Judgement], list[Judgem
 def counts_text(judgements: Sequence[Judgement]) -> str:
     """How many of each verdict, in words."""
     count = Counter(judgement.verdict for judgement in judgements)
-    return ", ".join(f"{count[verdict]} {verdict.value}" for verdict in Verdict if count[verdict])
+    return ", ".join(f"{count[verdict]} {verdict.value}" for verdict in ClaimVerdict if count[verdict])
 
 
 def printed_text(judgement: Judgement) -> str:

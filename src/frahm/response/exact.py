@@ -10,8 +10,7 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.harmonic_balance import (
     Search,
-    Track,
-    begin,
+    SolutionBranch,
     check_rest,
     connected,
     find_branches,
@@ -19,6 +18,7 @@ from frahm.harmonic_balance import (
     linear_growth,
     linear_response,
     resonant_grid,
+    search_over,
 )
 from frahm.harmonic_balance.inventory import NONE_FOUND, inventory_text, not_proven, unfinished
 from frahm.response.curve import ResponseCurve, SpecialPoint
@@ -26,7 +26,7 @@ from frahm.systems import System, detuning_of
 
 _MOST_SENTENCES = 5  # on points of one kind on one branch
 _ROUNDING = 2.0**-52
-_ROUGH = 1e-3  # truncation that is worth a word
+ROUGH = 1e-3  # truncation that is worth a word
 
 
 def exact_curve(
@@ -41,7 +41,7 @@ def exact_curve(
 
 def curve_and_branches(
     system: System, lo: float, hi: float, harmonics: int | None, forcing: Floats | None = None
-) -> tuple[ResponseCurve, Search | None, list[Track]]:
+) -> tuple[ResponseCurve, Search | None, list[SolutionBranch]]:
     """`exact_curve`, with the search and the branches behind it; a linear system has none."""
     settings: dict[str, Any] = {
         "method": "harmonic-balance",
@@ -50,33 +50,36 @@ def curve_and_branches(
     }
     if is_linear(system) or not np.any(system.forcing):
         return _linear_curve(system, lo, hi, settings, forcing), None, []
-    search = begin(system, lo, hi, harmonics, forcing)
-    tracks = find_branches(search)
+    search = search_over(system, lo, hi, harmonics, forcing)
+    branches = find_branches(search)
     settings["inventory"] = inventory_text(search)
-    settings["truncation"] = max((float(np.max(track.truncations)) for track in tracks), default=math.nan)
-    return _assembled(system, tracks, search, settings), search, tracks
+    settings["truncation"] = max((float(np.max(branch.points.truncations)) for branch in branches), default=math.nan)
+    return _assembled(system, branches, search, settings), search, branches
 
 
-def _assembled(system: System, tracks: list[Track], search: Search, settings: dict[str, Any]) -> ResponseCurve:
+def _assembled(
+    system: System, branches: list[SolutionBranch], search: Search, settings: dict[str, Any]
+) -> ResponseCurve:
     special, doubtful = [], [*search.unsearched, *search.budget.sentences(), *not_proven(search)]
-    for number, track in enumerate(tracks):
-        for event in track.events:
+    for number, branch in enumerate(branches):
+        for event in branch.bifurcations:
             W, _, _, pipe, relative = (float(value) for value in event.columns)
             sigma = float(detuning_of(system, W))
             status = "located" if event.located else "unverified"
             interval = (W - event.half_width, W + event.half_width)
             special.append(SpecialPoint(event.kind, W, sigma, pipe, relative, number, interval, status))
-        doubtful += _not_located(number, track) + _beyond_numbers(number, track)
-        if settings["harmonics"] == "auto" and np.max(track.truncations) > _ROUGH:
+        doubtful += _not_located(number, branch) + _beyond_numbers(number, branch)
+        rest = float(np.max(branch.points.truncations))
+        if settings["harmonics"] == "auto" and rest > ROUGH:
             doubtful.append(
-                f"Branch {number}: up to {100 * np.max(track.truncations):.3g} % of the forces lie beyond the highest"
+                f"Branch {number}: up to {100 * rest:.3g} % of the forces lie beyond the highest"
                 " harmonic there is room for, as stops and friction make them; its peaks are no better than that."
             )
-    doubtful += unfinished(tracks)
-    hanging = connected(tracks)
-    columns = np.concatenate([track.columns for track in tracks]) if tracks else np.empty((0, 5))
-    growth = np.concatenate([_growth(track) for track in tracks]) if tracks else np.empty(0)
-    if not tracks:
+    doubtful += unfinished(branches)
+    hanging = connected(branches)
+    columns = np.concatenate([branch.points.columns for branch in branches]) if branches else np.empty((0, 5))
+    growth = np.concatenate([_growth(branch) for branch in branches]) if branches else np.empty(0)
+    if not branches:
         doubtful.append(NONE_FOUND)
     return ResponseCurve(
         frequency=columns[:, 0],
@@ -85,12 +88,12 @@ def _assembled(system: System, tracks: list[Track], search: Search, settings: di
         relative_amplitude=columns[:, 2],
         pipe_peak=columns[:, 3],
         relative_peak=columns[:, 4],
-        branch=np.repeat(np.arange(len(tracks)), [len(track.Hs) for track in tracks]),
-        piece=np.concatenate([track.pieces for track in tracks]) if tracks else np.empty(0, int),
+        branch=np.repeat(np.arange(len(branches)), [len(branch.points) for branch in branches]),
+        piece=np.concatenate([branch.points.pieces for branch in branches]) if branches else np.empty(0, int),
         stable=growth < 0,
         growth_rate=growth,
-        detached=tuple(not any(track is other for other in hanging) for track in tracks),
-        asymmetric=tuple(search.problem.odd and not track.odd for track in tracks),
+        detached=tuple(not any(branch is other for other in hanging) for branch in branches),
+        asymmetric=tuple(search.problem.odd and not branch.odd for branch in branches),
         special_points=tuple(sorted(special, key=lambda p: p.frequency)),
         unverified=tuple(doubtful),
         settings=settings,
@@ -98,11 +101,11 @@ def _assembled(system: System, tracks: list[Track], search: Search, settings: di
     )
 
 
-def _not_located(number: int, track: Track) -> list[str]:
+def _not_located(number: int, branch: SolutionBranch) -> list[str]:
     """What was seen but not located on a branch: a sentence for each, or one for many of a kind."""
     sentences = []
-    for kind in dict.fromkeys(event.kind for event in track.events if not event.located):
-        at = sorted(float(e.columns[0]) for e in track.events if e.kind == kind and not e.located)
+    for kind in dict.fromkeys(event.kind for event in branch.bifurcations if not event.located):
+        at = sorted(float(e.columns[0]) for e in branch.bifurcations if e.kind == kind and not e.located)
         if len(at) <= _MOST_SENTENCES:
             sentences += [f"A {kind} near {W:.6g} rad/s was seen but not located." for W in at]
         else:
@@ -111,26 +114,27 @@ def _not_located(number: int, track: Track) -> list[str]:
     return sentences
 
 
-def _beyond_numbers(number: int, track: Track) -> list[str]:
+def _beyond_numbers(number: int, branch: SolutionBranch) -> list[str]:
     """Sentences where multipliers are no numbers."""
-    unknown = np.any(np.isnan(track.multipliers), axis=1)
-    beyond = ~np.all(np.isfinite(track.multipliers), axis=1) & ~unknown
+    multipliers, W = branch.points.multipliers, branch.points.frequency
+    unknown = np.any(np.isnan(multipliers), axis=1)
+    beyond = ~np.all(np.isfinite(multipliers), axis=1) & ~unknown
     reasons = (
         (beyond, "a disturbance grows beyond all numbers within a period: it is unstable there, and"),
         (unknown, "a period takes more steps than a search is given: its stability is not known there, nor are"),
     )
     return [
-        f"Branch {number}: between {np.min(track.frequency[where]):.6g} and {np.max(track.frequency[where]):.6g} rad/s"
+        f"Branch {number}: between {np.min(W[where]):.6g} and {np.max(W[where]):.6g} rad/s"
         f" {reason} its special points" + (" are not known." if where is beyond else ".")
         for where, reason in reasons
         if np.any(where)
     ]
 
 
-def _growth(track: Track) -> Floats:
+def _growth(branch: SolutionBranch) -> Floats:
     """Largest growth rate [1/s] from the multipliers of the map over half a period or a whole one."""
-    span = (math.pi if track.odd else 2 * math.pi) / track.frequency
-    largest = np.max(np.abs(track.multipliers), axis=1)
+    span = (math.pi if branch.odd else 2 * math.pi) / branch.points.frequency
+    largest = np.max(np.abs(branch.points.multipliers), axis=1)
     return np.asarray(np.log(np.maximum(largest, _ROUNDING)) / span)  # what decays faster is lost beside 1
 
 

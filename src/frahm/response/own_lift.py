@@ -9,8 +9,7 @@ from frahm.case import Case
 from frahm.errors import ParameterError
 from frahm.loads import OperatingRange, wind_excitation
 from frahm.response.frequency_response import frequency_response
-
-_SAME = 1.01  # a motion larger by less is as large
+from frahm.tolerances import AS_LARGE
 
 
 class OwnLift(NamedTuple):
@@ -34,7 +33,7 @@ class OwnLift(NamedTuple):
     @property
     def exceeds(self) -> bool:
         """Whether the winds move the pipe more than the one lift says."""
-        return self.peak > _SAME * self.worst
+        return self.peak > AS_LARGE * self.worst
 
     @property
     def text(self) -> str:

@@ -16,7 +16,7 @@ from frahm.screening.store import (
     wanted_members,
 )
 from frahm.screening.template import template_csv, template_xlsx
-from frahm.screening.verdict import FAIL, LOOK_CLOSER, NOT_JUDGED, PASS, VERDICTS, Verdict, share
+from frahm.screening.verdict import FAIL, LOOK_CLOSER, NOT_JUDGED, PASS, VERDICTS, MemberVerdict, share
 
 __all__ = [
     "COLUMNS",
@@ -31,8 +31,8 @@ __all__ = [
     "MemberColumn",
     "MemberScreen",
     "MemberTable",
+    "MemberVerdict",
     "ScreenedMember",
-    "Verdict",
     "expecting",
     "file_name",
     "members_csv",

@@ -10,7 +10,7 @@ from frahm import readable
 from frahm.analysis import plain
 from frahm.case import Case, Tube
 from frahm.screening.judging import Findings, criterion_row
-from frahm.screening.verdict import VERDICTS, Verdict
+from frahm.screening.verdict import VERDICTS, MemberVerdict
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class ScreenedMember:
         As in the table.
     place : str
         File and line it stands in.
-    verdict : Verdict
+    verdict : MemberVerdict
         With `word`, `why` and all `reasons`.
     ends : str
         As in the table.
@@ -37,7 +37,7 @@ class ScreenedMember:
 
     name: str
     place: str
-    verdict: Verdict
+    verdict: MemberVerdict
     ends: str = ""
     findings: Findings | None = None
     assumed: dict[str, str] = field(default_factory=dict)

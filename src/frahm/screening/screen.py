@@ -15,7 +15,7 @@ from frahm.screening.judging import findings
 from frahm.screening.member import ScreenedMember
 from frahm.screening.member_case import member_case
 from frahm.screening.reading import MemberRow, MemberTable, read_members
-from frahm.screening.verdict import FAIL, LOOK_CLOSER, NOT_JUDGED, VERDICTS, Verdict, verdict_of
+from frahm.screening.verdict import FAIL, LOOK_CLOSER, NOT_JUDGED, VERDICTS, MemberVerdict, verdict_of
 
 Progress = Callable[[str, int, int], None]
 _SHOWN = 6
@@ -181,7 +181,7 @@ def _screened(row: MemberRow) -> ScreenedMember:
 
 
 def _not_judged(row: MemberRow, why: str) -> ScreenedMember:
-    return ScreenedMember(row.name, row.place, Verdict(NOT_JUDGED, (why,)))
+    return ScreenedMember(row.name, row.place, MemberVerdict(NOT_JUDGED, (why,)))
 
 
 def provenance(table: MemberTable) -> dict[str, Any]:

@@ -19,7 +19,7 @@ _RESONANCE = "Lock-in band around 1/St"  # the criterion that says the same as t
 
 
 @dataclass(frozen=True)
-class Verdict:
+class MemberVerdict:
     """How a member is judged.
 
     Attributes
@@ -38,17 +38,17 @@ class Verdict:
         return self.reasons[0]
 
 
-def verdict_of(found: Findings) -> Verdict:
+def verdict_of(found: Findings) -> MemberVerdict:
     """FAIL if a limit is exceeded, as in `frahm run`; PASS if all is known, within its validity and clear of limits."""
     beyond = sorted((row for row in found.limits if row.ratio > 1), key=lambda row: -row.ratio)
     if beyond:
         doubts = (*found.motion.unverified, *found.damage_doubts)
         words = [row.text if row.limit == 1 else f"{row.text}, {share(row.ratio)}" for row in beyond]
-        return Verdict(FAIL, (f"{'; '.join(words)}; {_where(found)}.", *doubts, *found.implausible))
+        return MemberVerdict(FAIL, (f"{'; '.join(words)}; {_where(found)}.", *doubts, *found.implausible))
     open_questions = tuple(_open_questions(found))
     if open_questions:
-        return Verdict(LOOK_CLOSER, open_questions)
-    return Verdict(PASS, (_passes(found),))
+        return MemberVerdict(LOOK_CLOSER, open_questions)
+    return MemberVerdict(PASS, (_passes(found),))
 
 
 def _where(found: Findings) -> str:

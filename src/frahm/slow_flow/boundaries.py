@@ -15,6 +15,7 @@ from frahm.errors import ParameterError, check_number, nearest
 from frahm.slow_flow.folds import double_root
 from frahm.slow_flow.kernels import characteristic, equilibria, hurwitz, linear_parts, pipe_amplitude
 from frahm.slow_flow.model import SlowFlow
+from frahm.tolerances import TINY
 
 AXES = {"detuning": "rad/s", "kappa": "1/(m^2 s^2)", "xi2": "1/s", "rho2": "1", "force": "1"}
 _ROUNDING = 1e-13
@@ -257,7 +258,7 @@ def _on_segment(test: Callable[[Floats, Floats], Floats], line: Floats, index: n
     """Points of the zero curve at fractions of its segments, by bisection across the segment."""
     a, b = line[index], line[index + 1]
     guess = a + fraction[:, None] * (b - a)
-    size = np.ptp(line, axis=0) + 1e-300
+    size = np.ptp(line, axis=0) + TINY
     along_first = np.abs(b - a)[:, 0] / size[0] >= np.abs(b - a)[:, 1] / size[1]
     moving, fixed = np.where(along_first, guess[:, 1], guess[:, 0]), np.where(along_first, guess[:, 0], guess[:, 1])
 

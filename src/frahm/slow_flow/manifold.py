@@ -90,6 +90,13 @@ class SlowManifold:
         return Folds(nu, pipe, relative, landing)  # type: ignore[arg-type]
 
     @property
+    def reach(self) -> float:
+        """Largest |Z| [m] worth showing: a little beyond the jumps."""
+        if self.folds is not None:
+            return 1.35 * max(self.folds.landing)
+        return float(1.6 * np.sqrt(self._scale / (0.75 * self.slow.kappa)))
+
+    @property
     def _scale(self) -> float:
         return self.slow.rho2 * self.frequency**2
 

@@ -10,6 +10,7 @@ import numpy as np
 from frahm.arrays import Floats, frozen
 from frahm.errors import ParameterError
 from frahm.structure.modes import BeamModes
+from frahm.tolerances import TINY
 
 _NEAR = 1e-9  # of the largest section: positions closer than this are the same
 _STRESS_SECTIONS = 201
@@ -45,7 +46,7 @@ class ShapeTable:
 
     def _row(self, section: float) -> int:
         row = int(np.argmin(np.abs(self.sections - section)))
-        if abs(self.sections[row] - section) > _NEAR * max(np.max(np.abs(self.sections)), 1e-300):
+        if abs(self.sections[row] - section) > _NEAR * max(np.max(np.abs(self.sections)), TINY):
             known = ", ".join(f"{value:g}" for value in self.sections)
             raise ParameterError("section", section, f"a section of the table of modes: {known} m")
         return row

@@ -3,9 +3,7 @@
 The room is called like its verb: ``frahm.sweep(study, store=path)`` is `frahm.sweep.sweep`.
 """
 
-import sys
-import types
-
+from frahm.lazy import make_callable
 from frahm.sweep.layout import is_sweep
 from frahm.sweep.local import processes
 from frahm.sweep.store import stored_study
@@ -30,11 +28,4 @@ __all__ = [
     "values_text",
 ]
 
-
-class _Room(types.ModuleType):
-    """A module that can be called: the public name `frahm.sweep` and this folder are the same attribute of frahm."""
-
-    __call__ = staticmethod(sweep)
-
-
-sys.modules[__name__].__class__ = _Room
+make_callable(__name__, sweep)

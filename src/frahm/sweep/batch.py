@@ -13,8 +13,8 @@ from threading import Event
 import numpy as np
 
 from frahm import __version__
-from frahm.sweep.points import Point
-from frahm.sweep.quantities import Found, computed, equilibria, is_closed_form
+from frahm.sweep.points import StudyPoint
+from frahm.sweep.quantities import PointResult, computed, equilibria, is_closed_form
 from frahm.sweep.reasons import kind_of_reason
 from frahm.sweep.study import Study
 from frahm.sweep.study_file import load_study
@@ -83,11 +83,11 @@ def evaluated(text: str, version: str, indices: Sequence[int], stopped: Event | 
     study = _study(text)
     if all(is_closed_form(study, name) for name in study.asked):
         return _at_once(study, np.array(indices, dtype=np.int64))
-    done: list[tuple[Point, list[Found]]] = []
+    done: list[tuple[StudyPoint, list[PointResult]]] = []
     for index in indices:
         if stopped is not None and stopped.is_set():
             break
-        point = Point(study, int(index))
+        point = StudyPoint(study, int(index))
         done.append((point, [computed(name, [point])[0] for name in study.asked]))
     return _collected(study, done)
 
@@ -104,7 +104,7 @@ def _at_once(study: Study, indices: np.ndarray) -> Batch:
     status[bad] = Status.FAILED
     sentences = [""] * indices.size
     for row, failure in failures.items():
-        _, sentences[row] = _judged(study, [Found(failure=failure)])
+        _, sentences[row] = _judged(study, [PointResult(failure=failure)])
     return Batch(indices, columns, status, tuple(sentences))
 
 
@@ -113,7 +113,7 @@ def _study(text: str) -> Study:
     return load_study(json.loads(text))
 
 
-def _collected(study: Study, done: list[tuple[Point, list[Found]]]) -> Batch:
+def _collected(study: Study, done: list[tuple[StudyPoint, list[PointResult]]]) -> Batch:
     columns = {}
     for which, name in enumerate(study.asked):
         good = [row for row, (_, founds) in enumerate(done) if not founds[which].failure]
@@ -131,7 +131,7 @@ def _collected(study: Study, done: list[tuple[Point, list[Found]]]) -> Batch:
     )
 
 
-def _judged(study: Study, founds: list[Found]) -> tuple[Status, str]:
+def _judged(study: Study, founds: list[PointResult]) -> tuple[Status, str]:
     """Status of a point and the sentence for it: failures first, then doubts."""
     if not any(found.failure or found.doubts for found in founds):
         return Status.VERIFIED, ""

@@ -17,7 +17,7 @@ _WIND = {"wind_speed": "speed", "lift_coefficient": "lift_coefficient"}
 _ABSORBER = ("position", "rho2", "kappa", "xi2")
 
 
-class Point:
+class StudyPoint:
     """One point of a study; what is needed of it is made on first use.
 
     Parameters

@@ -14,18 +14,17 @@ from frahm.attractors import Attractor, find_attractors, worst_over
 from frahm.attractors.attractor import KINDS
 from frahm.errors import Outcome, ParameterError
 from frahm.response import ResponseCurve, frequency_response, periodic_responses, slow_flow_map
-from frahm.response.exact import exact_curve
+from frahm.response.exact import ROUGH, exact_curve
 from frahm.response.frequency_response import highest_harmonic
-from frahm.sweep.points import Point
+from frahm.sweep.points import StudyPoint
 from frahm.sweep.study import Study
 from frahm.sweep.variables import at_window
 
-_ROUGH = 1e-3  # residual of a response that is worth a word, as in the response curve
 _INNER = ("kappa", "xi2", "detuning")
 
 
 @dataclass(frozen=True)
-class Found:
+class PointResult:
     """What a quantity is at one point: numbers by the name of the variable without its prefix, and doubts."""
 
     numbers: dict[str, Any] = field(default_factory=dict)
@@ -33,7 +32,7 @@ class Found:
     failure: str = ""
 
 
-def computed(name: str, points: Sequence[Point]) -> list[Found]:
+def computed(name: str, points: Sequence[StudyPoint]) -> list[PointResult]:
     """One quantity at some points of a study. Whatever goes wrong at a point stays with it.
 
     A keyboard interrupt goes through, as does the one that a search for attractors answers with half a result.
@@ -43,7 +42,9 @@ def computed(name: str, points: Sequence[Point]) -> list[Found]:
     if is_closed_form(study, name):
         numbers, failures = equilibria(study, np.array([point.index for point in points]))
         return [
-            Found(failure=failures[row]) if row in failures else Found({key: v[row] for key, v in numbers.items()})
+            PointResult(failure=failures[row])
+            if row in failures
+            else PointResult({key: v[row] for key, v in numbers.items()})
             for row in range(len(points))
         ]
     function = _ONE_BY_ONE[name, at_window(study, asked)]
@@ -59,13 +60,13 @@ def is_closed_form(study: Study, name: str) -> bool:
 OF_THE_MACHINE = (OSError, MemoryError)
 
 
-def _guarded(function: Callable[[Point, Any], Found], point: Point, asked: Any) -> Found:
+def _guarded(function: Callable[[StudyPoint, Any], PointResult], point: StudyPoint, asked: Any) -> PointResult:
     try:
         return function(point, asked)
     except OF_THE_MACHINE:
         raise
     except Exception as error:  # a sweep never dies: any failure of a point is a value
-        return Found(failure=_said(error))
+        return PointResult(failure=_said(error))
 
 
 def _said(error: Exception) -> str:
@@ -96,7 +97,7 @@ def equilibria(study: Study, indices: np.ndarray) -> tuple[dict[str, np.ndarray]
     waiting = [np.flatnonzero(group) for group in _groups(outer, indices.size)]
     while waiting:
         rows = waiting.pop()
-        first = Point(study, int(indices[rows[0]]))
+        first = StudyPoint(study, int(indices[rows[0]]))
         try:
             found = _map(first, {name: column[rows] for name, column in values.items()}, rows.size)
             pipe[rows], relative[rows], stability[rows] = found
@@ -130,7 +131,7 @@ def _groups(outer: list[np.ndarray], points: int) -> Iterator[np.ndarray]:
         yield group.ravel() == number
 
 
-def _map(first: Point, axes: dict[str, Any], points: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _map(first: StudyPoint, axes: dict[str, Any], points: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Amplitudes [m] and stability of the equilibria at points that are like the first one but for the axes given."""
     asked = first.study.quantities.slow_flow
     axes.setdefault("detuning", np.full(points, first.place(asked)))
@@ -148,25 +149,25 @@ def _largest(values: Any) -> float:
     return float(np.max(numbers)) if numbers.size else float("nan")
 
 
-def _slow_flow_curve(point: Point, asked: Any) -> Found:
+def _slow_flow_curve(point: StudyPoint, asked: Any) -> PointResult:
     window: Any = point.place(asked)
     curve = frequency_response(point.system, detuning=window, method="slow-flow", form=point.case.analysis.form)
     return _of_curve(curve, {"saddle_nodes": "saddle-node", "hopfs": "hopf"})
 
 
-def _exact_curve(point: Point, asked: Any) -> Found:
+def _exact_curve(point: StudyPoint, asked: Any) -> PointResult:
     harmonics, within = highest_harmonic(point.case.analysis.harmonics), point.asked_range(asked)
     curve = exact_curve(point.system, *within.frequency, harmonics, within.factor)
     return _of_curve(curve, {"saddle_nodes": "saddle-node", "neimark_sackers": "neimark-sacker"})
 
 
-def _of_curve(curve: ResponseCurve, counted: dict[str, str]) -> Found:
+def _of_curve(curve: ResponseCurve, counted: dict[str, str]) -> PointResult:
     (peak, at), (stable, stable_at) = curve.largest(), curve.largest(stable_only=True)
     omega = float(curve.frequency[0] - curve.detuning[0]) if curve.frequency.size else float("nan")
     data = curve.to_dataset()
     detached = [branch.pipe_peak for branch in curve.branches if branch.detached]
     kinds = [point.kind for point in curve.special_points]
-    return Found(
+    return PointResult(
         {
             "stable_pipe_peak": stable,
             "stable_peak_detuning": stable_at - omega,
@@ -185,15 +186,15 @@ def _of_curve(curve: ResponseCurve, counted: dict[str, str]) -> Found:
     )
 
 
-def _responses(point: Point, asked: Any) -> Found:
+def _responses(point: StudyPoint, asked: Any) -> PointResult:
     sigma: Any = point.place(asked)
     found = periodic_responses(point.system, detuning=sigma, harmonics=point.case.analysis.harmonics)
     stable = [response for response in found if response.stable]
     doubts = found.unverified
     residual = max((response.residual for response in found), default=0.0)
-    if residual > _ROUGH and point.case.analysis.harmonics == "auto":
+    if residual > ROUGH and point.case.analysis.harmonics == "auto":
         doubts += (f"Up to {100 * residual:.3g} % of the forces lie beyond the highest harmonic there is room for.",)
-    return Found(
+    return PointResult(
         {
             "stable_pipe_peak": _largest([response.pipe_peak for response in stable]),
             "pipe_peak": _largest([response.pipe_peak for response in found]),
@@ -206,14 +207,14 @@ def _responses(point: Point, asked: Any) -> Found:
     )
 
 
-def _worst(point: Point, asked: Any) -> Found:
+def _worst(point: StudyPoint, asked: Any) -> PointResult:
     found = worst_over(
         point.system, point.asked_range(asked), samples=asked.samples, min_basin=asked.min_basin, seed=point.seed,
         workers=1,
     )  # fmt: skip
     if Outcome.INTERRUPTED.value in found.unverified:
         raise KeyboardInterrupt
-    return Found(
+    return PointResult(
         {
             "pipe_peak": found.pipe_peak,
             "relative_peak": found.relative_peak,
@@ -228,7 +229,7 @@ def _worst(point: Point, asked: Any) -> Found:
     )
 
 
-def _attractors(point: Point, asked: Any) -> Found:
+def _attractors(point: StudyPoint, asked: Any) -> PointResult:
     sigma: Any = point.place(asked)
     found = find_attractors(point.system, detuning=sigma, samples=asked.samples, seed=point.seed, workers=1)
     if found.outcome is Outcome.INTERRUPTED:
@@ -237,7 +238,7 @@ def _attractors(point: Point, asked: Any) -> Found:
     worst = max(counting, key=_peak)
     unsettled = [motion for motion in found if motion.kind == "unsettled"]
     doubts = (*found.unsettled(asked.min_basin), *found.unverified)
-    return Found(
+    return PointResult(
         {
             "pipe_peak": worst.pipe_peak,
             "relative_peak": _largest([motion.relative_peak for motion in counting]),
@@ -258,9 +259,9 @@ def _peak(motion: Attractor) -> float:
     return -1.0 if np.isnan(motion.pipe_peak) else motion.pipe_peak
 
 
-def _fatigue(point: Point, asked: Any) -> Found:
+def _fatigue(point: StudyPoint, asked: Any) -> PointResult:
     found = fatigue_damage(point.case, seed=point.seed, workers=1)
-    return Found(
+    return PointResult(
         {
             "damage_with": found.damage_with,
             "damage_weighted": found.damage_with_weighted,
@@ -271,7 +272,7 @@ def _fatigue(point: Point, asked: Any) -> Found:
     )
 
 
-_ONE_BY_ONE: dict[tuple[str, bool], Callable[[Point, Any], Found]] = {
+_ONE_BY_ONE: dict[tuple[str, bool], Callable[[StudyPoint, Any], PointResult]] = {
     ("slow_flow", True): _slow_flow_curve,
     ("response", True): _exact_curve,
     ("response", False): _responses,

@@ -15,7 +15,7 @@ from pydantic import Field, ValidationError, field_serializer, field_validator, 
 from frahm.case import Case
 from frahm.case.problems import parameter_error
 from frahm.case.quantities import Count, Label, Quantity, refusal
-from frahm.case.section import Section
+from frahm.case.section import CaseSection
 from frahm.errors import ParameterError, check_count
 from frahm.sweep.doors import WINDOW, AxisValues, BaseCase, Place
 
@@ -30,7 +30,7 @@ def _axis(title: str, what: str) -> Any:
 Values = tuple[float, ...] | None
 
 
-class Axes(Section):
+class Axes(CaseSection):
     """What varies. The last axis named here is the one that runs fastest."""
 
     pipe_frequency: Annotated[Values, AxisValues("rad/s", "omega", above=0, name="pipe_frequency")] = _axis(
@@ -72,19 +72,19 @@ _PLACE = Field(
 )
 
 
-class SlowFlowAsked(Section):
+class SlowFlowAsked(CaseSection):
     """The slow flow of one mode with one cubic sink, in the form of the case: cheap, approximate."""
 
     detuning: Annotated[float | tuple[float, float] | str, Place()] = _PLACE
 
 
-class ResponseAsked(Section):
+class ResponseAsked(CaseSection):
     """Every exact periodic response, by harmonic balance."""
 
     detuning: Annotated[float | tuple[float, float] | str, Place()] = _PLACE
 
 
-class AttractorsAsked(Section):
+class AttractorsAsked(CaseSection):
     """The largest of all lasting motions, as `worst_case` over a window or `find_attractors` at a detuning."""
 
     detuning: Annotated[float | tuple[float, float] | str, Place()] = _PLACE
@@ -96,11 +96,11 @@ class AttractorsAsked(Section):
     )
 
 
-class FatigueAsked(Section):
+class FatigueAsked(CaseSection):
     """Fatigue damage over the wind climate of the case."""
 
 
-class Quantities(Section):
+class Quantities(CaseSection):
     """What is computed at every point."""
 
     slow_flow: SlowFlowAsked | None = Field(
@@ -122,7 +122,7 @@ class Quantities(Section):
         return {key: {} if value is None else value for key, value in data.items()} if isinstance(data, dict) else data
 
 
-class Study(Section):
+class Study(CaseSection):
     """A case, what varies, and what is computed at every point. SI units, frequencies in rad/s.
 
     Raises
@@ -188,13 +188,13 @@ class Study(Section):
 
     def _can_be_built(self) -> None:
         """A mistake that every point would repeat is one of the study; one of some points stays with them."""
-        from frahm.sweep.points import Point
+        from frahm.sweep.points import StudyPoint
 
         try:
-            Point(self, 0).check()
+            StudyPoint(self, 0).check()
         except ParameterError as first:
             try:
-                Point(self, self.size - 1).check()
+                StudyPoint(self, self.size - 1).check()
             except ParameterError:
                 allowed, hint = "axes and quantities that fit the case", f"The first point says: {first}."
                 raise refusal(allowed, path="axes", value=self.values_at(0), hint=hint) from None
@@ -233,9 +233,9 @@ class Study(Section):
 
     def case_at(self, index: int) -> Case:
         """The case of one point. A factor on the force and the detuning are no part of a case."""
-        from frahm.sweep.points import Point
+        from frahm.sweep.points import StudyPoint
 
-        return Point(self, index).case
+        return StudyPoint(self, index).case
 
     def seed_at(self, index: int) -> int:
         """The seed of one point: it depends on the seed of the study and the number of the point alone."""

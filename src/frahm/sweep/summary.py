@@ -17,7 +17,7 @@ _LISTED = 6
 
 
 @dataclass(frozen=True)
-class Extreme:
+class Extremes:
     """The smallest and the largest value of a variable, and at which points."""
 
     variable: Variable
@@ -40,7 +40,7 @@ class SweepSummary:
         Of frahm that made it.
     verified, unverified, failed, pending : int
         Number of points.
-    extremes : tuple of Extreme
+    extremes : tuple of Extremes
         Of what one compares points by.
     troubles : tuple of str
         A sentence for every reason why points failed or are unverified, the most frequent first.
@@ -52,7 +52,7 @@ class SweepSummary:
     unverified: int
     failed: int
     pending: int
-    extremes: tuple[Extreme, ...]
+    extremes: tuple[Extremes, ...]
     troubles: tuple[str, ...]
 
     @property
@@ -107,12 +107,12 @@ def _unit(axis: str) -> str:
     return f" {unit}" if unit else ""
 
 
-def _extreme(study: Study, variable: Variable, values: np.ndarray, status: np.ndarray) -> Extreme | None:
+def _extreme(study: Study, variable: Variable, values: np.ndarray, status: np.ndarray) -> Extremes | None:
     if np.all(np.isnan(values)):
         return None
     best, worst = int(np.nanargmin(values)), int(np.nanargmax(values))
     sure = status == Status.VERIFIED
-    return Extreme(
+    return Extremes(
         variable, float(values[best]), study.values_at(best), bool(sure[best]), float(values[worst]),
         study.values_at(worst), bool(sure[worst]),
     )  # fmt: skip

@@ -42,12 +42,12 @@ def text_table(path: Path, label: str, largest: int) -> Table:
     Names and units stand in one line (``x [mm]``), in two, or nowhere. Numbers have a decimal point or, where the
     columns are not apart by commas, a decimal comma. A column of ISO dates becomes seconds since the first one.
     """
-    return _decoded(path, label, lambda lines: _Reader(label, lines).read())
+    return _decoded(path, label, lambda lines: _TableReader(label, lines).read())
 
 
 def text_cells(path: Path, label: str, largest: int) -> Cells:
     """Cells of a text file as they stand, columns apart by comma, semicolon, tab or blanks."""
-    return _decoded(path, label, lambda lines: _Reader(label, lines).cells(), _REMARK)
+    return _decoded(path, label, lambda lines: _TableReader(label, lines).cells(), _REMARK)
 
 
 def _decoded(
@@ -88,7 +88,7 @@ def _numbered(stream: TextIO, label: str, comment: re.Pattern[str]) -> Iterator[
 
 
 @dataclass
-class _Reader:
+class _TableReader:
     """Reads one table; only what is known about it is kept between the lines."""
 
     label: str

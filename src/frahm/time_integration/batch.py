@@ -16,7 +16,7 @@ from frahm.errors import Outcome, ParameterError, check_count, check_number
 from frahm.lanes import address, lane_room
 from frahm.systems import System, as_system, excitation_frequency
 from frahm.time_integration.packed_system import Integers, Numbers, PackedSystems, pack_systems
-from frahm.time_integration.propagate import Findings, Plan, Room, Runs, make_room, propagate
+from frahm.time_integration.propagate import Kept, Plan, Room, Runs, make_room, propagate
 from frahm.time_integration.window import LEAST_PEAK, PEAK, ROWS, SQUARE
 
 if TYPE_CHECKING:
@@ -167,16 +167,21 @@ def plan_run(
     *, periods: float, window: int, first_sample: int, samples_per_period: int, tolerance: float | None
 ) -> Plan:
     """Checked plan with a step limit that grows with the length of the run."""
-    tolerance = TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
+    tolerance = checked_tolerance(tolerance)
     whole = float(np.floor(periods))
     max_steps = LEAST_STEPS + STEPS_PER_PERIOD * periods
     return Plan(whole, periods - whole, float(window), first_sample, samples_per_period, tolerance, max_steps)
 
 
-def run_plan(packed: PackedSystems, runs: Runs, plan: Plan, samples: int, workers: int | None) -> Findings:
+def checked_tolerance(tolerance: float | None) -> float:
+    """Local error per step relative to the size of the motion; the default if none is given."""
+    return TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
+
+
+def run_plan(packed: PackedSystems, runs: Runs, plan: Plan, samples: int, workers: int | None) -> Kept:
     """Run all trajectories on threads; the kernel holds no lock while it works."""
     count, width = runs.state.shape
-    findings = Findings(
+    findings = Kept(
         np.zeros(count, dtype=np.int64), np.zeros((count, 2), dtype=np.int64), np.zeros(count),
         np.zeros((count, ROWS)), np.empty((count, samples, width)),
     )  # fmt: skip
@@ -186,7 +191,7 @@ def run_plan(packed: PackedSystems, runs: Runs, plan: Plan, samples: int, worker
         room, numbers = make_room(width // 2), Numbers(*(lane_room(table.shape[0]) for table in packed.tables))
         propagate(
             packed.structure, packed.tables, numbers, Numbers(*map(address, numbers)), room, Room(*map(address, room)),
-            Runs(*(values[part] for values in runs)), plan, Findings(*(values[part] for values in findings)),
+            Runs(*(values[part] for values in runs)), plan, Kept(*(values[part] for values in findings)),
         )  # fmt: skip
 
     threads = (os.cpu_count() or 1) if workers is None else check_count("workers", workers, at_most=1024)
@@ -214,7 +219,7 @@ def check_memory(name: str, value: Any, numbers: int) -> None:
         )  # fmt: skip
 
 
-def _result(systems: tuple[System, ...], omega: Floats, runs: Runs, plan: Plan, findings: Findings) -> BatchResult:
+def _result(systems: tuple[System, ...], omega: Floats, runs: Runs, plan: Plan, findings: Kept) -> BatchResult:
     seen = findings.window.copy()
     seen[findings.outcome != 0] = np.nan
     if plan.window == 0:

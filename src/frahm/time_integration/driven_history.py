@@ -16,6 +16,7 @@ from frahm.time_integration import signals
 from frahm.time_integration.batch import LEAST_STEPS, STEPS_PER_PERIOD, outcome_of
 from frahm.time_integration.driven import Flow, drive, mechanics_of, table_of
 from frahm.time_integration.wake import WAKE_FLOOR, WAKE_START, wake_flow
+from frahm.tolerances import TINY
 
 _FLOOR = 1e-6  # of the static deflection: the size of a pipe at rest
 
@@ -118,7 +119,7 @@ def integrate_record(
         flow, shape = _flow(case, system, record)
         mechanics = mechanics_of(system, shape)
         push = float(np.max(np.abs(mechanics.forcing))) * float(np.max(record.speed)) ** 2
-        least = max(_FLOOR * push * float(np.max(flow.lift[:, 1])) / omega**2, 1e-300)
+        least = max(_FLOOR * push * float(np.max(flow.lift[:, 1])) / omega**2, TINY)
     else:
         flow, mechanics = wake_flow(case, wake), mechanics_of(system, np.eye(n)[0])
         least, start[2 * n] = WAKE_FLOOR * case.pipe.diameter, WAKE_START

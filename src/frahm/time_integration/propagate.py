@@ -65,7 +65,7 @@ class Plan(NamedTuple):
     max_steps: float
 
 
-class Findings(NamedTuple):
+class Kept(NamedTuple):
     """What is kept of each trajectory."""
 
     outcome: Any

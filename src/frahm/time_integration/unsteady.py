@@ -17,7 +17,7 @@ from frahm.loads import WakeOscillator, scruton_number, skop_griffin_number, win
 from frahm.loads.record import WindRecord, as_record, constant_record, turbulent_record
 from frahm.loads.vortex import check_speeds
 from frahm.systems import build_system
-from frahm.time_integration.batch import TOLERANCE, check_memory
+from frahm.time_integration.batch import TOLERANCE, check_memory, checked_tolerance
 from frahm.time_integration.driven_history import DrivenHistory, integrate_record
 from frahm.time_integration.wake import check_wake, wake_excitation
 
@@ -211,7 +211,7 @@ def unsteady_response(
     wind = _wind(case, record, duration, seed)
     span = wind.duration if duration is None else min(duration, wind.duration)
     _check_winds(case, wind, span, wake)
-    tolerance = TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
+    tolerance = checked_tolerance(tolerance)
     per_period = check_count("samples_per_period", samples_per_period, at_least=8, at_most=10**4)
     work = _Integration(case, wind, span, per_period, tolerance, wake)
     runs = work.runs(initial_state)

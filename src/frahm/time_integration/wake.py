@@ -19,7 +19,7 @@ from frahm.errors import ConvergenceError, Outcome, ParameterError, check_count,
 from frahm.loads import WakeOscillator
 from frahm.systems import System, build_system
 from frahm.time_integration import signals
-from frahm.time_integration.batch import LEAST_STEPS, TOLERANCE, outcome_of
+from frahm.time_integration.batch import LEAST_STEPS, checked_tolerance, outcome_of
 from frahm.time_integration.driven import Flow, drive, mechanics_of, table_of
 
 if TYPE_CHECKING:
@@ -202,7 +202,7 @@ def wake_response(
     wake = WakeOscillator() if wake is None else wake
     check_wake(case, wake)
     axis = np.linspace(*_window(case, wake, wind), check_count("speeds", speeds, at_least=2, at_most=10**5))
-    tolerance = TOLERANCE if tolerance is None else check_number("tolerance", tolerance, at_least=1e-14, at_most=1e-2)
+    tolerance = checked_tolerance(tolerance)
     blocks = max(2, check_count("most_periods", most_periods, at_least=2 * _BLOCK, at_most=10**7) // _BLOCK)
     systems = [build_system(case), build_system(case.without_absorbers())] if case.absorbers else [build_system(case)]
     tasks = [(case, system, wake, order, tolerance, blocks) for system in systems for order in (axis, axis[::-1])]

@@ -15,6 +15,7 @@ from frahm.arrays import Floats
 from frahm.case import Case, load_case
 from frahm.errors import Outcome, ParameterError
 from frahm.harmonic_balance import PeriodicResponse
+from frahm.tolerances import TINY
 from frahm.web.deciding import decision
 from frahm.web.scope import Axis, range_of
 
@@ -119,7 +120,7 @@ def motion(
 def _distance(response: PeriodicResponse, near: tuple[float | None, float | None]) -> float:
     """Relative distance of a response from the peaks clicked at."""
     pairs = zip((response.pipe_peak, response.relative_peak), near, strict=True)
-    return sum(abs(math.log(max(now, 1e-300) / max(wanted, 1e-300))) for now, wanted in pairs if wanted is not None)
+    return sum(abs(math.log(max(now, TINY) / max(wanted, TINY))) for now, wanted in pairs if wanted is not None)
 
 
 def _view(history: Any, tail: Any, kind: str, about: str, detuning: float) -> Any:

@@ -53,12 +53,11 @@ def manifold_lines(case: Case, detuning: float) -> ManifoldLines:
     relation = slow_manifold(slow, slow.omega + detuning)
     folds = relation.folds
     if folds is None:
-        reach = 1.6 * float(np.sqrt(slow.rho2 * relation.frequency**2 / (0.75 * slow.kappa)))
-        Z = np.linspace(0.0, reach, _MANIFOLD_POINTS)
+        Z = np.linspace(0.0, relation.reach, _MANIFOLD_POINTS)
         X = relation.pipe_amplitude(Z)
         return ManifoldLines(Z, X, np.full(Z.size, np.nan), None)
     low, high = folds.relative
-    Z = np.unique(np.concatenate([np.linspace(0.0, 1.35 * max(folds.landing), _MANIFOLD_POINTS - 2), (low, high)]))
+    Z = np.unique(np.concatenate([np.linspace(0.0, relation.reach, _MANIFOLD_POINTS - 2), (low, high)]))
     X = relation.pipe_amplitude(Z)
     between = (low < Z) & (high > Z)
     return ManifoldLines(Z, np.where(between, np.nan, X), np.where((low <= Z) & (high >= Z), X, np.nan), folds)

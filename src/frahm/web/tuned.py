@@ -9,12 +9,12 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.case import Case
+from frahm.harmonic_balance.linear import around_resonance
 from frahm.systems import build_system
 from frahm.web.scope import range_of
 
 MASS_RATIO = 0.02  # of an absorber that is offered to a pipe without one
 _EVEN, _AROUND = 301, 61  # points over the range, and around every resonance
-_NARROWEST = 1e-9  # of the frequency: half width of a resonance without damping
 
 
 @dataclass(frozen=True)
@@ -75,8 +75,7 @@ def bare_response(case: Case) -> LinearResponse:
 def _grid(case: Case, resonances: Iterable[tuple[float, float]]) -> Floats:
     """Frequencies [rad/s] true to resonances at omega with the decay delta: evenly along the circle that each draws."""
     lo, hi = range_of(case).frequency
-    turns = np.tan(np.linspace(-0.5, 0.5, _AROUND + 2)[1:-1] * np.pi)
-    around = [omega + max(delta, _NARROWEST * omega) * turns for omega, delta in resonances]
+    around = [around_resonance(omega, delta, _AROUND) for omega, delta in resonances]
     grid = np.unique(np.concatenate([np.linspace(lo, hi, _EVEN), *around]))
     return grid[(grid >= lo) & (grid <= hi)]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.analysis import Analysis, modulated
+from frahm.analysis import CaseAnalysis, modulated
 from frahm.analysis.long_term import _row
 from frahm.analysis.modulated import basins
 from frahm.analysis.section import Section, Work
@@ -35,13 +35,13 @@ def test_one_motion_at_the_design_wind_and_several_at_the_worst(detached, monkey
     peaks = data["pipe_peak"].values[np.unique(data["label"].values[data["label"].values >= 0])]
     assert peaks.max() > 0.045  # detached; 0.0174 at its lower end and 0.0519 at its upper, by collocation
     assert np.abs(peaks - 0.0063).min() < 3e-4  # on the branch that comes from low frequency
-    analysis = Analysis(
+    analysis = CaseAnalysis(
         case=CASE, results=section.results | {"coexisting": detached}, data={}, checks=(), unverified=(), notes=(),
         interrupted=False, version="",
     )  # fmt: skip
     assert "where the worst motion is" in basin_caption(analysis)
     assert "at -0.1 rad/s" in basin_caption(analysis)
-    windy = Analysis(
+    windy = CaseAnalysis(
         case=CASE, results={"coexisting": [detached[0] | {"wind_speed": 2.59}]}, data={}, checks=(), unverified=(),
         notes=(), interrupted=False, version="",
     )  # fmt: skip

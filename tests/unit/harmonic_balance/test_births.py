@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.harmonic_balance import begin
+from frahm.harmonic_balance import search_over
 from frahm.harmonic_balance.births import needed_force
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.systems import with_parameters
@@ -52,7 +52,7 @@ REGION = {"x1": (-0.03, 0.03), "v1": (-0.15, 0.15), "z": (-0.05, 0.05), "w": (-0
 
 
 def test_slopes_of_the_needed_force_against_differences():
-    search = begin(SINK, 4.7, 5.0, 5)
+    search = search_over(SINK, 4.7, 5.0, 5)
     H, W, a = 5, 4.8, 0.035
     X = np.zeros(unknowns(search.problem, H, True) + 1)
 

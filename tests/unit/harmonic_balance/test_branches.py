@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.harmonic_balance import begin, find_branches
+from frahm.harmonic_balance import find_branches, search_over
 from frahm.harmonic_balance.condensation import condense
 from frahm.harmonic_balance.seeds import amplitude_roots, seeder_for, spring_polynomial
 
@@ -16,14 +16,14 @@ def sink(coefficients=(0, 0, 0.01), damping=0.05):
 
 @pytest.mark.parametrize("harmonics", [3, 9, 25])
 def test_a_given_number_of_harmonics_is_kept(harmonics):
-    for track in find_branches(begin(sink(), 0.7, 0.85, harmonics)):
-        assert set(track.Hs) == {harmonics}
+    for branch in find_branches(search_over(sink(), 0.7, 0.85, harmonics)):
+        assert set(branch.points.Hs) == {harmonics}
 
 
 def test_automatic_number_of_harmonics_reaches_its_goal():
-    for track in find_branches(begin(sink(), 0.6, 1.5, None)):
-        assert np.max(track.truncations) < 1e-8
-        assert len(set(track.Hs)) > 1
+    for branch in find_branches(search_over(sink(), 0.6, 1.5, None)):
+        assert np.max(branch.points.truncations) < 1e-8
+        assert len(set(branch.points.Hs)) > 1
 
 
 @pytest.mark.parametrize(

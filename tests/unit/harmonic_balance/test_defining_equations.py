@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import frahm
-from frahm.harmonic_balance import begin, find_branches
+from frahm.harmonic_balance import find_branches, search_over
 from frahm.harmonic_balance.condensation import CondensedChange, coordinates, linear_part, unknowns
 from frahm.harmonic_balance.detached import _second_derivatives
 from frahm.harmonic_balance.fold_equations import FoldEquations
@@ -38,16 +38,16 @@ def found(request):
     if request.param == "sliding":
         system = sliding_pipe()
     omega = system.reference_frequency
-    search = begin(system, omega - 0.2, omega + 0.2, None)
+    search = search_over(system, omega - 0.2, omega + 0.2, None)
     return system, search, find_branches(search)
 
 
 def first_point(found, kind):
-    _, search, tracks = found
-    for track in tracks:
-        for event, point in zip(track.events, track.event_points, strict=True):
+    _, search, branches = found
+    for branch in branches:
+        for event in branch.bifurcations:
             if event.kind == kind:
-                return search, track, point
+                return search, branch, event.point
     raise AssertionError(kind)
 
 
@@ -68,11 +68,12 @@ def differences(function, y, h=1e-6):
 @pytest.mark.parametrize("axes", AXES)
 def test_saddle_node_equations(found, axes):
     system = found[0]
-    search, track, (y, _, H) = first_point(found, "saddle-node")
-    n = unknowns(search.problem, H, track.odd)
+    search, branch, point = first_point(found, "saddle-node")
+    y, H = point.y, point.H
+    n = unknowns(search.problem, H, branch.odd)
     values = values_of(system, axes, y[n])
-    equations = FoldEquations(system, axes, y[n], H, track.odd, search.x_scale, tuple(values))
     at = np.append(y[:n] / search.x_scale, [1.0, 1.0])
+    equations = FoldEquations(system, axes, y[n], H, branch.odd, search.x_scale, tuple(values), at)
     R, J = equations.residual(at)
     assert np.max(np.abs(R)) < 1e-8
     weight = 1 / np.max(np.abs(equations.orbit(at).J), axis=1)
@@ -89,12 +90,13 @@ def test_saddle_node_equations(found, axes):
 @pytest.mark.parametrize("axes", AXES)
 def test_neimark_sacker_equations(found, axes):
     system = found[0]
-    search, track, (y, _, H) = first_point(found, "neimark-sacker")
-    n = unknowns(search.problem, H, track.odd)
+    search, branch, point = first_point(found, "neimark-sacker")
+    y, H = point.y, point.H
+    n = unknowns(search.problem, H, branch.odd)
     values = values_of(system, axes, y[n])
     y0 = y[n]
-    equations = TorusEquations(system, axes, y[n], H, track.odd, search.x_scale, tuple(values))
     at = np.append(y[:n] / search.x_scale, [1.0, 1.0, 0.3749 / y[n]])
+    equations = TorusEquations(system, axes, y[n], H, branch.odd, search.x_scale, tuple(values), at)
     _, J = equations.residual(at)
     A, _ = equations._hill(equations.orbit(at), at[-1] * y0)
     weight = 1 / np.max(np.abs(A), axis=1)
@@ -108,6 +110,21 @@ def test_neimark_sacker_equations(found, axes):
         return np.concatenate([orbit.R, [g.real, g.imag]])
 
     assert pytest.approx(differences(plain, at), abs=1e-7) == J
+
+
+@pytest.mark.parametrize(("kind", "cls"), [("saddle-node", FoldEquations), ("neimark-sacker", TorusEquations)])
+def test_a_residual_does_not_depend_on_which_point_was_asked_first(found, kind, cls):
+    axes = ("frequency", "force")
+    search, branch, point = first_point(found, kind)
+    n = unknowns(search.problem, point.H, branch.odd)
+    W = point.y[n]
+    values = tuple(values_of(found[0], axes, W))
+    at = np.append(point.y[:n] / search.x_scale, [1.0, 1.0] if kind == "saddle-node" else [1.0, 1.0, 0.3749 / W])
+    first, second = (cls(found[0], axes, W, point.H, branch.odd, search.x_scale, values, at) for _ in range(2))
+    away = at * np.append(np.full(n, -0.3), np.ones(at.size - n))
+    first.residual(away)
+    assert np.array_equal(first.residual(at)[0], second.residual(at)[0])
+    assert np.array_equal(first.residual(away)[0], second.residual(away)[0])
 
 
 @pytest.mark.parametrize("name", ["kappa", "xi2", "rho2", "force", "pipe_frequency"])

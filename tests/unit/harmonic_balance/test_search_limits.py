@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import frahm
-from frahm.harmonic_balance import begin, find_branches
-from frahm.harmonic_balance.events import unstable_count
+from frahm.harmonic_balance import find_branches, search_over
+from frahm.harmonic_balance.bifurcations import unstable_count
 from frahm.harmonic_balance.found import Budget
 
 OMEGA = 2 * math.pi * 0.78
@@ -79,12 +79,12 @@ def test_multipliers_that_drown_in_the_rounding_of_a_large_one_are_not_counted()
 
 
 def test_a_search_without_end_stops_at_its_limit_and_says_so():
-    search = begin(with_bistable_sink(), 0.88 * OMEGA, 1.12 * OMEGA, None)
-    search = dataclasses.replace(search, budget=Budget(points=2500, events=10))
-    tracks = find_branches(search)
-    assert tracks
+    search = search_over(with_bistable_sink(), 0.88 * OMEGA, 1.12 * OMEGA, None)
+    search = dataclasses.replace(search, budget=Budget(points=2500, bifurcations=10))
+    found = find_branches(search)
+    assert found
     assert len(search.budget.sentences()) == 2
-    assert sum(event.located for track in tracks for event in track.events) <= 20
+    assert sum(event.located for branch in found for event in branch.bifurcations) <= 20
 
 
 def test_lists_say_what_was_searched():
