@@ -1,11 +1,13 @@
-"""Eight numbers at once: a vector type for compiled kernels.
+"""Sixteen numbers at once: a vector type for compiled kernels.
 
 Whether a compiler turns a loop over lanes into vector instructions depends on what it can prove about overlapping
-arrays. Here nothing is left to be proved: a value of type `Lanes` *is* a vector of eight doubles, whatever register
-width the machine has. Operations act on every lane by itself, so a lane never depends on its neighbours.
+arrays. Here nothing is left to be proved: a value of type `Lanes` *is* two vectors of eight doubles, whatever register
+width the machine has. There are two because one step of an integration is a long chain of operations, each of which
+waits for the one before it: the second chain fills the time. Operations act on every lane by itself, so a lane never
+depends on its neighbours.
 
 Inner loops know arrays by their address only: an array argument of numba is seven numbers and a reference count, which
-cost more than the arithmetic on eight lanes.
+cost more than the arithmetic on the lanes.
 """
 
 from __future__ import annotations
@@ -24,13 +26,15 @@ from numpy.typing import NDArray
 
 from frahm.compiled import kernel
 
-LANES = 8
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+_WIDTH, _PARTS = 8, 2  # doubles of a vector, as many as the widest register holds, and vectors
+LANES = _WIDTH * _PARTS
+_VECTOR = ir.VectorType(ir.DoubleType(), _WIDTH)
+_PAIR = ir.LiteralStructType([_VECTOR] * _PARTS)
 
 
 class _LanesType(types.Type):
     def __init__(self) -> None:
-        super().__init__(name="Lanes8")
+        super().__init__(name=f"Lanes{LANES}")
 
 
 lanes_type = _LanesType()
@@ -39,19 +43,30 @@ lanes_type = _LanesType()
 @register_model(_LanesType)
 class _LanesModel(models.PrimitiveModel):
     def __init__(self, dmm: Any, fe_type: Any):
-        super().__init__(dmm, fe_type, _VECTOR)
+        super().__init__(dmm, fe_type, _PAIR)
+
+
+def _joined(builder: Any, parts: list[Any]) -> Any:
+    """The vectors as one value."""
+    value = ir.Constant(_PAIR, ir.Undefined)
+    for k, part in enumerate(parts):
+        value = builder.insert_value(value, part, k)
+    return value
 
 
 def _spread(builder: Any, scalar: Any) -> Any:
-    """All lanes equal to one number."""
+    """A vector of equal numbers."""
     zero = ir.Constant(ir.IntType(32), 0)
     first = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), scalar, zero)
-    mask = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+    mask = ir.Constant(ir.VectorType(ir.IntType(32), _WIDTH), [0] * _WIDTH)
     return builder.shuffle_vector(first, ir.Constant(_VECTOR, ir.Undefined), mask)
 
 
-def _as_vector(builder: Any, kind: Any, value: Any) -> Any:
-    return value if isinstance(kind, _LanesType) else _spread(builder, value)
+def _parts(builder: Any, kind: Any, value: Any) -> list[Any]:
+    """The vectors of a value; those of a number are all alike."""
+    if isinstance(kind, _LanesType):
+        return [builder.extract_value(value, k) for k in range(_PARTS)]
+    return [_spread(builder, value)] * _PARTS
 
 
 def _define_operator(function: Any, instruction: str) -> None:
@@ -63,8 +78,8 @@ def _define_operator(function: Any, instruction: str) -> None:
     infer_global(function)(Template)
 
     def lower(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        a, b = (_as_vector(builder, kind, value) for kind, value in zip(sig.args, args, strict=True))
-        return getattr(builder, instruction)(a, b)
+        a, b = (_parts(builder, kind, value) for kind, value in zip(sig.args, args, strict=True))
+        return _joined(builder, [getattr(builder, instruction)(x, y) for x, y in zip(a, b, strict=True)])
 
     for a, b in pairs:
         lower_builtin(function, a, b)(lower)
@@ -84,21 +99,24 @@ def _pointer(builder: Any, base: Any, index: Any, element: Any, wanted: Any) -> 
 
 @intrinsic
 def load(typingctx: Any, base: Any, index: Any) -> Any:
-    """Eight doubles from the `index`-th one on, of those stored at the address `base`."""
+    """As many doubles as there are lanes, from the `index`-th one on, of those stored at the address `base`."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return builder.load(_pointer(builder, args[0], args[1], ir.DoubleType(), _VECTOR), align=8)
+        first = _pointer(builder, args[0], args[1], ir.DoubleType(), _VECTOR)
+        places = [builder.gep(first, [ir.Constant(ir.IntType(32), k)]) for k in range(_PARTS)]
+        return _joined(builder, [builder.load(place, align=8) for place in places])
 
     return lanes_type(types.intp, types.intp), codegen
 
 
 @intrinsic
 def store(typingctx: Any, base: Any, index: Any, value: Any) -> Any:
-    """Put lanes where `load` would read them; a number goes into all eight."""
+    """Put lanes where `load` would read them; a number goes into all of them."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        vector = _as_vector(builder, sig.args[2], args[2])
-        builder.store(vector, _pointer(builder, args[0], args[1], ir.DoubleType(), _VECTOR), align=8)
+        first = _pointer(builder, args[0], args[1], ir.DoubleType(), _VECTOR)
+        for k, part in enumerate(_parts(builder, sig.args[2], args[2])):
+            builder.store(part, builder.gep(first, [ir.Constant(ir.IntType(32), k)]), align=8)
         return context.get_dummy_value()
 
     kind = value if isinstance(value, _LanesType) else types.float64
@@ -123,7 +141,7 @@ def address(array: NDArray[Any]) -> int:
 
 
 def lane_room(count: int) -> NDArray[np.float64]:
-    """Zeros for `count` vectors, placed so that no vector straddles two cache lines."""
+    """Zeros for `count` values of all lanes, placed so that no vector straddles two cache lines."""
     room = np.zeros((count + 1) * LANES)
     skip = (-room.ctypes.data % (8 * LANES)) // 8
     return room[skip : skip + count * LANES]
@@ -134,7 +152,7 @@ def spread(typingctx: Any, number: Any) -> Any:
     """All lanes equal to one number."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        return _spread(builder, args[0])
+        return _joined(builder, [_spread(builder, args[0])] * _PARTS)
 
     return lanes_type(types.float64), codegen
 
@@ -144,8 +162,8 @@ def where_at_most(typingctx: Any, a: Any, b: Any, x: Any, y: Any) -> Any:
     """`x` in lanes where a <= b, otherwise `y`; a NaN in the comparison gives `y`."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        a, b, x, y = (_as_vector(builder, kind, value) for kind, value in zip(sig.args, args, strict=True))
-        return builder.select(builder.fcmp_ordered("<=", a, b), x, y)
+        parts = zip(*(_parts(builder, kind, value) for kind, value in zip(sig.args, args, strict=True)), strict=True)
+        return _joined(builder, [builder.select(builder.fcmp_ordered("<=", a, b), x, y) for a, b, x, y in parts])
 
     kinds = [kind if isinstance(kind, _LanesType) else types.float64 for kind in (a, b, x, y)]
     return lanes_type(*kinds), codegen
@@ -156,9 +174,11 @@ def any_positive(typingctx: Any, value: Any) -> Any:
     """Whether a lane is > 0."""
 
     def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
-        mask = builder.fcmp_ordered(">", args[0], ir.Constant(_VECTOR, [0.0] * LANES))
-        bits = builder.bitcast(mask, ir.IntType(LANES))
-        return builder.icmp_unsigned("!=", bits, ir.Constant(ir.IntType(LANES), 0))
+        none, found = ir.Constant(_VECTOR, [0.0] * _WIDTH), ir.Constant(ir.IntType(_WIDTH), 0)
+        for part in _parts(builder, sig.args[0], args[0]):
+            mask = builder.fcmp_ordered(">", part, none)
+            found = builder.or_(found, builder.bitcast(mask, ir.IntType(_WIDTH)))
+        return builder.icmp_unsigned("!=", found, ir.Constant(ir.IntType(_WIDTH), 0))
 
     return types.boolean(value), codegen
 
@@ -167,8 +187,8 @@ def _unary(name: str) -> Any:
     def make(typingctx: Any, value: Any) -> Any:
         def codegen(context: Any, builder: Any, sig: Any, args: Any) -> Any:
             kind = ir.FunctionType(_VECTOR, [_VECTOR])
-            function = cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{LANES}f64")
-            return builder.call(function, args)
+            function = cgutils.get_or_insert_function(builder.module, kind, f"llvm.{name}.v{_WIDTH}f64")
+            return _joined(builder, [builder.call(function, [part]) for part in _parts(builder, sig.args[0], args[0])])
 
         return lanes_type(lanes_type), codegen
 
@@ -202,7 +222,7 @@ def cos_turns(turns):
 
 
 def parameter(table, index, like):
-    """Entry `index` of a packed table: a number where `like` is a number, eight of them where it is `Lanes`."""
+    """Entry `index` of a packed table: a number where `like` is a number, one for every lane where it is `Lanes`."""
     raise NotImplementedError
 
 

@@ -21,10 +21,10 @@ from frahm.lanes import (
 def arithmetic(at_a, at_b, at_out):
     a, b = load(at_a, 0), load(at_b, 0)
     store(at_out, 0, (a + 2.0 * b) / 3.0 - a * b)
-    store(at_out, 8, square_root(magnitude(b)))
-    store(at_out, 16, maximum(a, b))
-    store(at_out, 24, where_at_most(a, 0.0, a, 1.0))
-    store(at_out, 32, cos_turns(a))
+    store(at_out, 1 * LANES, square_root(magnitude(b)))
+    store(at_out, 2 * LANES, maximum(a, b))
+    store(at_out, 3 * LANES, where_at_most(a, 0.0, a, 1.0))
+    store(at_out, 4 * LANES, cos_turns(a))
     return any_positive(a), any_positive(a - 100.0)
 
 
@@ -38,6 +38,15 @@ def test_operations_act_on_every_lane():
     np.testing.assert_array_equal(out[2], np.maximum(a, b))
     np.testing.assert_array_equal(out[3], np.where(a <= 0, a, 1.0))
     np.testing.assert_allclose(out[4], np.cos(2 * np.pi * (a - np.round(a))), atol=5e-16)
+
+
+@pytest.mark.parametrize("lane", range(LANES))
+def test_one_positive_lane_is_seen_wherever_it_is(lane):
+    a, b, out = lane_room(1), lane_room(1), lane_room(5)
+    a[:] = -1.0
+    a[lane] = 1.0
+    assert arithmetic(address(a), address(b), address(out)) == (True, False)
+    assert list(np.nonzero(out.reshape(5, LANES)[3] == 1.0)[0]) == [lane]
 
 
 def test_a_nan_stays_in_its_lane():

@@ -2,8 +2,8 @@
 
 Every law is a polynomial and a linear damper; further parts add to them, and the law's kind says which: 0 is the bare
 polynomial, otherwise a sum of `SPRINGS`, `STOPS`, `FRICTION` and `WEIGHT`. The compiled functions take `z` and `w`
-either as numbers or as `frahm.lanes` vectors; the table then holds one number or eight per entry. A further part needs
-a number here, its entries in `pack_laws` and a branch in the three functions of parts.
+either as numbers or as `frahm.lanes` vectors; the table then holds, for every entry, one number or one of each lane. A
+further part needs a number here, its entries in `pack_laws` and a branch in the three functions of parts.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ import numpy as np
 from frahm.attractors import Attractor, AttractorSet
 from frahm.attractors.attractor import clopper_pearson
 from frahm.attractors.finding import attractors_reached
-from frahm.attractors.orbits import Orbit, orbit_at
+from frahm.attractors.orbits import Orbit, orbit_at, orbit_size
 from frahm.attractors.settling import known_orbits
 from frahm.attractors.stroboscope import Stroboscope
 from frahm.harmonic_balance import PeriodicResponse
@@ -39,7 +39,7 @@ def lasting(strobe: Stroboscope, responses: Sequence[PeriodicResponse], found: A
         gone = [one for one, end in zip(seeming, ends, strict=True) if end == index]
         if not gone:
             continue
-        at = next((at for at, one in enumerate(kept) if _is_on(one, orbit)), None)
+        at = next((at for at, one in enumerate(kept) if _is_on(strobe, one, orbit)), None)
         if at is None:
             kept += attractors_reached(strobe, responses, orbit.states[:1], found.periods)
             at = len(kept) - 1
@@ -52,7 +52,7 @@ def _orbits(strobe: Stroboscope, responses: Sequence[PeriodicResponse], found: A
     """Orbits of the stable periodic responses, and of the periodic motions found beside them."""
     orbits = [one for one in known_orbits(strobe, [r.state for r in responses if r.stable]) if one is not None]
     for one in found:
-        if one.kind == "periodic" and not any(_is_on(one, orbit) for orbit in orbits):
+        if one.kind == "periodic" and not any(_is_on(strobe, one, orbit) for orbit in orbits):
             orbit = orbit_at(strobe, np.array(one.representative_state), one.period_multiple)
             orbits += [] if orbit is None else [orbit]
     return orbits
@@ -64,21 +64,23 @@ def _ends(strobe: Stroboscope, orbits: Sequence[Orbit], motions: Sequence[Attrac
     states = np.array([one.representative_state for one in motions])
     left = np.arange(len(motions))
     for _ in range(0, periods, _CHUNK):
-        glimpse = strobe.run(states[left], _CHUNK)
+        glimpse = strobe.run(states[left], _CHUNK, strobes=max(orbit.multiple for orbit in orbits))
         states[left] = glimpse.states
-        left = left[glimpse.codes == 0]
+        good = glimpse.codes == 0
+        left, strobes = left[good], glimpse.strobes[good]
         for index, orbit in enumerate(orbits):
-            inside = orbit.contains(states[left])
-            for at in left[inside]:
+            ended = orbit.attracts(strobes)
+            for at in left[ended]:
                 ends[at] = index
-            left = left[~inside]
+            left, strobes = left[~ended], strobes[~ended]
         if not left.size:
             break
     return ends
 
 
-def _is_on(one: Attractor, orbit: Orbit) -> bool:
-    return one.kind == "periodic" and bool(orbit.contains(one.representative_state[None])[0])
+def _is_on(strobe: Stroboscope, one: Attractor, orbit: Orbit) -> bool:
+    state = one.representative_state[None]
+    return one.kind == "periodic" and orbit.holds(state, orbit_size(strobe, state))
 
 
 def _with_basins(one: Attractor, others: Sequence[Attractor], samples: int) -> Attractor:

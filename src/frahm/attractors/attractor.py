@@ -15,6 +15,7 @@ from scipy.stats import beta
 
 from frahm import readable
 from frahm.arrays import Floats, labelled
+from frahm.attractors.extremes import RarePeaks
 from frahm.attractors.regions import Region
 from frahm.errors import Outcome
 
@@ -40,12 +41,8 @@ class Attractor:
         Largest |x| of the output and |z| of the first element [m] over the window kept. Where the motion does not
         repeat, that is all of eight motions of 1000 periods each; a longer time may show a larger one, see
         `pipe_peak_expected`. Infinite for an escaping motion, NaN for one that cannot be integrated.
-    pipe_peak_expected, relative_peak_expected : float
-        Level [m] that |x| or |z| exceeds once, on average, in `return_time`: the quantile of the peaks of stretches of
-        50 periods, of motions followed for 64 000 periods in all or longer. The peak itself for a periodic motion, NaN
-        for an unsettled one.
-    pipe_peak_expected_interval, relative_peak_expected_interval : tuple of float
-        95 % interval of it [m], of no assumed distribution; infinite above where 256 000 periods bound it not.
+    rare_peaks : RarePeaks
+        What a longer time may show, see `pipe_peak_expected`.
     return_time : float
         10 000 periods of the forcing [s].
     pipe_rms, relative_rms : float
@@ -87,10 +84,7 @@ class Attractor:
     detuning: float
     pipe_peak: float
     relative_peak: float
-    pipe_peak_expected: float
-    pipe_peak_expected_interval: tuple[float, float]
-    relative_peak_expected: float
-    relative_peak_expected_interval: tuple[float, float]
+    rare_peaks: RarePeaks
     return_time: float
     pipe_rms: float
     relative_rms: float
@@ -108,6 +102,30 @@ class Attractor:
     representative_state: Floats
     from_rest: bool
     outcome: Outcome
+
+    @property
+    def pipe_peak_expected(self) -> float:
+        """Level [m] that |x| exceeds once, on average, in `return_time`.
+
+        The quantile of the peaks of stretches of 50 periods, of motions followed for 64 000 periods in all or longer,
+        which is done when it is first asked for. The peak itself for a periodic motion, NaN for an unsettled one.
+        """
+        return self.rare_peaks.levels[0].value
+
+    @property
+    def pipe_peak_expected_interval(self) -> tuple[float, float]:
+        """95 % interval of it [m], of no assumed distribution; infinite above where 256 000 periods bound it not."""
+        return self.rare_peaks.levels[0].interval
+
+    @property
+    def relative_peak_expected(self) -> float:
+        """As `pipe_peak_expected`, of |z| of the first element [m]."""
+        return self.rare_peaks.levels[1].value
+
+    @property
+    def relative_peak_expected_interval(self) -> tuple[float, float]:
+        """95 % interval of it [m]."""
+        return self.rare_peaks.levels[1].interval
 
     @property
     def leaks(self) -> bool:

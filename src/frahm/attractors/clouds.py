@@ -126,10 +126,10 @@ def _kept(strobe: Stroboscope, starts: Floats, orbits: Sequence[Orbit]) -> tuple
     """What motions show in the end and their strobes, see `_watched`, and which are on none of the orbits, nor lost."""
     stayed = strobe.run(starts, STAY)
     alive = stayed.codes == 0
-    stretches, watched, states, good = _watched(strobe, np.where(alive[:, None], stayed.states, starts))
+    stretches, watched, _, good = _watched(strobe, np.where(alive[:, None], stayed.states, starts))
     good &= alive
     for orbit in orbits:
-        good &= ~orbit.contains(states)
+        good &= ~orbit.attracts(watched)
     return stretches, watched, good
 
 
@@ -147,7 +147,7 @@ def peaks_of_long_motions(
             break
         stretches, strobes, states, good = _watched(strobe, states)
         for orbit in orbits:
-            good &= ~orbit.contains(states)
+            good &= ~orbit.attracts(strobes)
         good[good] = cloud.share(strobes[good, -WATCH // 2 :]) >= BELONGS
         if not np.any(good):
             break

@@ -7,6 +7,8 @@ bursts; how much their number counts for is seen from how unevenly high peaks fa
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +27,29 @@ class Level(NamedTuple):
 
     value: float
     interval: tuple[float, float]
+
+
+class RarePeaks:
+    """Levels of the pipe and of the first element, found when they are first asked for: that takes long motions.
+
+    Parameters
+    ----------
+    find : callable
+        Finds both.
+    """
+
+    def __init__(self, find: Callable[[], tuple[Level, Level]]):
+        self._find = find
+
+    @classmethod
+    def known(cls, pipe: float, relative: float) -> RarePeaks:
+        """Of a motion whose peaks are always the same, or of one that nothing is known of."""
+        return cls(lambda: (Level(pipe, (pipe, pipe)), Level(relative, (relative, relative))))
+
+    @functools.cached_property
+    def levels(self) -> tuple[Level, Level]:
+        """Of the pipe, and of the first element."""
+        return self._find()
 
 
 def expected_peak(peaks: Floats, stretches: float) -> Level:

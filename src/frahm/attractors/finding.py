@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ import numpy as np
 from frahm.arrays import Floats, frozen
 from frahm.attractors.attractor import Attractor, AttractorSet, clopper_pearson
 from frahm.attractors.clouds import STRETCH, Cloud, peaks_of_long_motions
-from frahm.attractors.extremes import DURATION, Level, enough, expected_peak, poisson_interval
+from frahm.attractors.extremes import DURATION, Level, RarePeaks, enough, expected_peak, poisson_interval
 from frahm.attractors.modulation import beat_frequency
 from frahm.attractors.orbits import Orbit
 from frahm.attractors.regions import Region, checked_region, default_region, sample_region
@@ -51,7 +52,7 @@ def find_attractors(
 
     Motions are started from a scrambled Sobol sample of the region, from rest, beside every unstable periodic response,
     and from the jumps of the slow manifold; stable periodic responses are known from harmonic balance. A motion inside
-    the ball around a stable orbit in which the exact equations contract (a radius verified by sampled iterations) is
+    a ball around a stable orbit in which the exact equations contract (a radius verified by sampled iterations) is
     settled; one that nearly repeats, after up to 64 periods, is refined by Newton's method. One that keeps coming back
     to where it has been, and from where eight of sixteen motions have not left within 2500 periods, is on a modulated
     or chaotic set. As motions leave some chaotic sets in the end, those on one are followed to the last period: the
@@ -132,8 +133,9 @@ def attractors_from(
     settling = begin_settling(strobe, responses, periods)
     begun = [seed_states(strobe, responses), starts[:_SCOUTS], *(state[None] for state in others)]
     seeds = settling.settle(np.concatenate(begun))
-    settled = settling.settle(starts, resume=not seeds.interrupted)
-    rest = settling.settle(np.zeros((1, 2 * system.size)), resume=not settled.interrupted)
+    scouts = seeds.part(np.arange(len(begun[0]), len(begun[0]) + len(begun[1])))
+    settled = settling.settle_left(starts, scouts, resume=not seeds.interrupted)
+    rest = settling.settle_left(begun[0][:1], seeds.part(np.arange(1)), resume=not settled.interrupted)
     counted = np.array([outcome is not Outcome.INTERRUPTED for outcome in settled.outcomes], dtype=bool)
     found = describe(settling, settled, counted, int(rest.labels[0]))
     return AttractorSet(
@@ -239,7 +241,8 @@ def _orbit_looks(strobe: Stroboscope, orbit: Orbit) -> dict[str, Any]:
     return {
         "kind": "periodic",
         **_sizes(seen),
-        **_expected(strobe, seen[:, [0]], seen[:, [3]]),
+        "rare_peaks": RarePeaks.known(float(seen[0, 0]), float(seen[0, 3])),
+        "return_time": DURATION * strobe.period,
         "period_multiple": p,
         "beat_period": float("nan"),
         "frequencies": (strobe.frequency / p,),
@@ -254,11 +257,11 @@ def _cloud_looks(settling: Settling, clouds: Sequence[Cloud]) -> dict[str, Any]:
     strobe, members = settling.strobe, clouds[0].members
     exponent = clouds[0].exponent
     beat = beat_frequency(strobe, members)
-    peaks = peaks_of_long_motions(strobe, clouds[0], settling.orbits, lambda seen: enough(seen, DURATION / STRETCH))
     return {
         "kind": "chaotic" if exponent.chaotic else "quasi-periodic",
         **_sizes(np.concatenate([cloud.seen for cloud in clouds])),
-        **_expected(strobe, peaks[..., 0], peaks[..., 1]),
+        "rare_peaks": RarePeaks(functools.partial(_levels, strobe, clouds[0], settling.orbits)),
+        "return_time": DURATION * strobe.period,
         "period_multiple": 0,
         "beat_period": 2 * np.pi / beat,
         "frequencies": (strobe.frequency, beat),
@@ -283,14 +286,11 @@ def _sizes(seen: Floats) -> dict[str, Any]:
     }
 
 
-def _expected(strobe: Stroboscope, pipe: Floats, relative: Floats) -> dict[str, Any]:
-    """What the peaks (m, S) of consecutive stretches lead one to expect; one alone is that of a motion that repeats."""
-    found: dict[str, Any] = {"return_time": DURATION * strobe.period}
-    for name, peaks in (("pipe_peak", pipe), ("relative_peak", relative)):
-        once = float(peaks[0, 0])
-        level = expected_peak(peaks, DURATION / STRETCH) if peaks.size > 1 else Level(once, (once, once))
-        found |= {f"{name}_expected": level.value, f"{name}_expected_interval": level.interval}
-    return found
+def _levels(strobe: Stroboscope, cloud: Cloud, orbits: Sequence[Orbit]) -> tuple[Level, Level]:
+    """What is exceeded once in the return time on an attractor that is no orbit, by pipe and first element."""
+    stretches = DURATION / STRETCH
+    peaks = peaks_of_long_motions(strobe, cloud, orbits, lambda seen: enough(seen, stretches))
+    return expected_peak(peaks[..., 0], stretches), expected_peak(peaks[..., 1], stretches)
 
 
 def _unsettled(strobe: Stroboscope, settled: Settled, counted: np.ndarray, total: int) -> list[Attractor]:
@@ -301,7 +301,7 @@ def _unsettled(strobe: Stroboscope, settled: Settled, counted: np.ndarray, total
         members = np.array([i for i in np.flatnonzero(unlabelled) if settled.outcomes[i] is reason], dtype=int)
         if not members.size:
             continue
-        seen, unknown = np.full((1, 6), np.inf if reason is Outcome.DIVERGED else nan), np.full((1, 1), nan)
+        seen = np.full((1, 6), np.inf if reason is Outcome.DIVERGED else nan)
         if reason is Outcome.NOT_CONVERGED:
             seen = np.max(strobe.run(settled.states[members], _WATCH, window=_WATCH).seen, axis=0, keepdims=True)
         lost.append(
@@ -309,7 +309,8 @@ def _unsettled(strobe: Stroboscope, settled: Settled, counted: np.ndarray, total
                 kind="unsettled",
                 **_where(strobe),
                 **_sizes(seen),
-                **_expected(strobe, unknown, unknown),
+                rare_peaks=RarePeaks.known(nan, nan),
+                return_time=DURATION * strobe.period,
                 period_multiple=0,
                 beat_period=nan,
                 frequencies=(strobe.frequency,),

@@ -1,9 +1,10 @@
-"""Stable periodic orbits as attractors, with a ball around each in which the motion provably settles onto it.
+"""Stable periodic orbits as attractors, with balls around states of each in which a motion settles onto it.
 
 The ball is an ellipsoid |R (y - y*)| <= r in a norm adapted to the monodromy matrix, in which the linearised map
 contracts at about its spectral radius. How large r may be is verified by sampling: states on shells from small up to r
 are carried over a few turns of the orbit by the exact equations, and the norm of every one of them must shrink. So the
-radius rests on samples, not on a bound.
+radius rests on samples, not on a bound. Of an orbit that takes many periods only a few states have one: a motion on it
+passes through each of them in turn.
 
 Linearisation by Magnus steps: Blanes et al. (2009), doi 10.1016/j.physrep.2008.11.001.
 """
@@ -11,6 +12,7 @@ Linearisation by Magnus steps: Blanes et al. (2009), doi 10.1016/j.physrep.2008.
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +30,7 @@ _LARGEST_TURN = 0.25  # norm of a step's exponent
 _TAYLOR = 11
 _FIRST, _RATIO, _LARGEST = 0.01, 1.6, 3.0  # radii tried, in sizes of the orbit
 _DIRECTIONS = 64
+_BALLS = 4  # of an orbit, at most: more than one, because some are too small to be met
 _PATIENCE, _MOST_TURNS = 0.25, 64  # turns over which the norm must shrink, in times of decay
 _MARGIN = 0.1  # share of the linear contraction that must be left
 _WELL_CONDITIONED, _BLIND = 1e6, 1e12  # condition numbers: of eigenvectors that can be trusted, of a norm that cannot
@@ -62,7 +65,7 @@ class Ball:
 
 @dataclass(frozen=True, eq=False)
 class Orbit:
-    """Stable periodic orbit: states at whole periods (p, 2n), a ball around each, multipliers over p periods."""
+    """Stable periodic orbit: states at whole periods (p, 2n), balls around some of them, multipliers over p periods."""
 
     states: Floats
     balls: tuple[Ball, ...]
@@ -82,13 +85,20 @@ class Orbit:
         apart = np.max(np.abs(states[:, None] - self.states) / size, axis=2)
         return bool(np.max(np.min(apart, axis=1)) < _SETTLED)
 
-    def distance(self, states: Floats) -> Floats:
-        """Distance of states (N, 2n) from the orbit at whole periods, in the norms of the balls over their radii."""
-        return np.min([ball.distance(states) for ball in self.balls], axis=0)
+    def distance(self, strobes: Floats) -> Floats:
+        """How near a motion with these strobes (K, 2n) came to the balls, turn by turn (K // p,), over their radii."""
+        turns = len(strobes) // self.multiple
+        last = strobes[len(strobes) - turns * self.multiple :]
+        return np.asarray(np.min([ball.distance(last).reshape(turns, -1) for ball in self.balls], axis=(0, 2)))
 
     def contains(self, states: Floats) -> np.ndarray:
-        """Which of the states are settling onto the orbit."""
+        """Which of the states (N, 2n) lie in a ball, so that the motion settles onto the orbit."""
         return np.any([ball.contains(states) for ball in self.balls], axis=0)
+
+    def attracts(self, strobes: Floats) -> np.ndarray:
+        """Which motions with strobes (N, K, 2n) came through a ball in their last p periods; K must be p at least."""
+        last = strobes[:, -self.multiple :]
+        return np.any(self.contains(last.reshape(-1, last.shape[2])).reshape(last.shape[:2]), axis=1)
 
 
 def monodromy_along(system: System, span: float, displacements: Floats, velocities: Floats | None = None) -> Floats:
@@ -143,8 +153,8 @@ def orbit_at(strobe: Stroboscope, state: Floats, multiple: int = 1) -> Orbit | N
         return None
     size = orbit_size(strobe, centres)
     balls: list[Ball] = []
-    for centre, Phi in zip(centres, maps, strict=True):
-        balls.append(_ball(strobe, centre, Phi, size, multiple, balls[-1] if balls else None))
+    for at in range(0, multiple, math.ceil(multiple / _BALLS)):
+        balls.append(_ball(strobe, centres[at], maps[at], size, multiple, balls[-1] if balls else None))
     multipliers = eigenvalues(maps[0])
     multipliers = multipliers[np.argsort(-np.abs(multipliers))]
     return Orbit(frozen(centres), tuple(balls), frozen(multipliers, complex))

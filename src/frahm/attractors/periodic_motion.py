@@ -9,7 +9,7 @@ import numpy as np
 
 from frahm.arrays import Floats, frozen
 from frahm.attractors.attractor import Attractor, AttractorSet
-from frahm.attractors.extremes import DURATION
+from frahm.attractors.extremes import DURATION, RarePeaks
 from frahm.errors import Outcome
 from frahm.harmonic_balance import linear_growth, linear_response
 from frahm.loads import OperatingRange
@@ -73,8 +73,7 @@ def _periodic(system: System, W: float, sizes: tuple[float, ...], state: Floats,
     pipe, stroke, pipe_rms, stroke_rms = sizes
     return Attractor(
         kind="periodic", frequency=W, detuning=float(detuning_of(system, W)), pipe_peak=pipe, relative_peak=stroke,
-        pipe_peak_expected=pipe, pipe_peak_expected_interval=(pipe, pipe), relative_peak_expected=stroke,
-        relative_peak_expected_interval=(stroke, stroke), return_time=DURATION * 2 * math.pi / W,
+        rare_peaks=RarePeaks.known(pipe, stroke), return_time=DURATION * 2 * math.pi / W,
         escape_rate=0.0, escape_interval=(0.0, 0.0), pipe_rms=pipe_rms, relative_rms=stroke_rms,
         envelope=(pipe, pipe), relative_envelope=(stroke, stroke), period_multiple=1, beat_period=math.nan,
         frequencies=(W,), lyapunov=growth, lyapunov_interval=(growth, growth), basin_fraction=1.0,

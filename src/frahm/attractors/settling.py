@@ -69,6 +69,19 @@ class Settled:
         """Whether an interruption left states without label."""
         return Outcome.INTERRUPTED in self.outcomes
 
+    def part(self, members: np.ndarray) -> Settled:
+        """Where some of the states went."""
+        outcomes = [self.outcomes[i] for i in members]
+        kept = (self.states, self.periods, self.held, self.held_from)
+        return Settled(self.labels[members], outcomes, *(values[members] for values in kept))
+
+    def put(self, members: np.ndarray, part: Settled) -> None:
+        """Say of some of the states where they went."""
+        for i, outcome in zip(members, part.outcomes, strict=True):
+            self.outcomes[i] = outcome
+        for name in ("labels", "states", "periods", "held", "held_from"):
+            getattr(self, name)[members] = getattr(part, name)
+
 
 class _Nature(enum.IntEnum):
     """What the strobes of a motion have shown so far."""
@@ -152,12 +165,7 @@ class Settling:
 
     def settle(self, states: Floats, resume: bool = True) -> Settled:
         """Label states (N, 2n); an interruption, or `resume` being false after one, leaves the rest unlabelled."""
-        count = len(states)
-        waiting = Outcome.NOT_CONVERGED if resume else Outcome.INTERRUPTED
-        result = Settled(
-            np.full(count, UNLABELLED), [waiting] * count, np.array(states), np.zeros(count, dtype=int),
-            np.full(count, UNLABELLED), np.zeros(count, dtype=int),
-        )  # fmt: skip
+        count, result = len(states), _begun(states, resume)
         self._attempts = _ATTEMPTS
         done, group = 0, max(8, _GROUP // self.strobe.system.size)
         try:
@@ -168,6 +176,15 @@ class Settling:
             for i in range(done, count):
                 if result.outcomes[i] is Outcome.NOT_CONVERGED:
                     result.outcomes[i] = Outcome.INTERRUPTED
+        return result
+
+    def settle_left(self, states: Floats, before: Settled, resume: bool = True) -> Settled:
+        """As `settle`, but for the first of the states, which have been settled `before`, where these have a label."""
+        result = _begun(states, resume)
+        labelled = np.flatnonzero(before.labels != UNLABELLED)
+        result.put(labelled, before.part(labelled))
+        left = np.flatnonzero(result.labels == UNLABELLED)
+        result.put(left, self.settle(states[left], resume))
         return result
 
     def _settle_group(self, result: Settled, active: np.ndarray) -> None:
@@ -197,16 +214,13 @@ class Settling:
         left, strobes = self._carry(result, watched.active, BLOCK, BLOCK, bound)
         watched.keep(left)
         watched.history = np.concatenate([watched.history, strobes], axis=1)[:, -2 * WINDOW * BLOCK :]
-        watched.keep(self._drop_inside_balls(result, watched.active))
-        self._drop_passed_through_balls(result, watched)
+        self._drop_attracted(result, watched)
 
-    def _drop_passed_through_balls(self, result: Settled, watched: _Watched) -> None:
-        """Done is what was in a ball of an orbit at any of its periods: one of its balls may be too small to be met."""
+    def _drop_attracted(self, result: Settled, watched: _Watched) -> None:
+        """Done is what came through a ball of an orbit in its last turn."""
         for index, attractor in enumerate(self.known):
             if len(watched.active) and isinstance(attractor, Orbit):
-                last = watched.history[:, -attractor.multiple :]
-                inside = attractor.contains(last.reshape(-1, last.shape[2])).reshape(last.shape[:2])
-                _label(result, watched.active[inside.any(axis=1)], index)
+                _label(result, watched.active[attractor.attracts(watched.history)], index)
                 watched.keep(watched.active[result.labels[watched.active] == UNLABELLED])
 
     def _carry(
@@ -253,7 +267,7 @@ class Settling:
             watched.tried[at] = 0 if found is None else result.periods[i]  # a beat is for `_look_for_clouds` to try
             watched.refused[at] = result.periods[i] if found is None else 0
             if len(self.known) > known:
-                watched.keep(self._drop_inside_balls(result, watched.active))
+                self._drop_attracted(result, watched)
 
     def _repeats(self, strobes: Floats) -> list[tuple[list[int], list[int]]]:
         """After how many periods each of the motions (N, K, 2n) nearly repeats, and after which better and better."""
@@ -359,8 +373,19 @@ class Settling:
         orbit = self.known[index]
         assert isinstance(orbit, Orbit)
         distance, last = orbit.distance(strobes), strobes[-HIGHEST_MULTIPLE:]
-        nearer = np.max(distance[-HIGHEST_MULTIPLE:]) < np.min(distance[:HIGHEST_MULTIPLE])
+        turns = HIGHEST_MULTIPLE // orbit.multiple
+        nearer = np.max(distance[-turns:]) < np.min(distance[:turns])
         return index if nearer or orbit.holds(last, orbit_size(self.strobe, strobes)) else None
+
+
+def _begun(states: Floats, resume: bool) -> Settled:
+    """States (N, 2n) before anything is known of them."""
+    count = len(states)
+    waiting = Outcome.NOT_CONVERGED if resume else Outcome.INTERRUPTED
+    return Settled(
+        np.full(count, UNLABELLED), [waiting] * count, np.array(states), np.zeros(count, dtype=int),
+        np.full(count, UNLABELLED), np.zeros(count, dtype=int),
+    )  # fmt: skip
 
 
 def known_orbits(strobe: Stroboscope, states: Sequence[Floats]) -> list[Orbit | None]:

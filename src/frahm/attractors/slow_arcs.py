@@ -12,7 +12,7 @@ import numpy as np
 
 from frahm.compiled import kernel
 from frahm.slow_flow.kernels import PAPER, coefficients
-from frahm.slow_flow.motion import slow_jacobian, slow_velocity
+from frahm.slow_flow.motion import put_jacobian, slow_velocity
 from frahm.time_integration import coefficients as dop853
 
 STAGES = 12
@@ -32,8 +32,23 @@ _E3 = _A[STAGES] - np.array(_weights("B", 3))
 @kernel
 def frequency_slope(form, omega, xi1, xi2, k1, rho2, F, kappa, W, X, Z):
     """Derivatives of X' and Z' by Omega [m]."""
-    p, _, q, r, _, _, _ = coefficients(form, W, omega, xi1, xi2, k1, rho2)
     dX, dZ = slow_velocity(form, omega, xi1, xi2, k1, rho2, F, kappa, W, X, Z)
+    return _slope_at(form, omega, xi1, xi2, k1, rho2, W, X, Z, dX, dZ)
+
+
+@kernel
+def velocities(form, omega, xi1, xi2, k1, rho2, F, kappa, W, states, found):
+    """Time derivatives of states (M, 4) into `found` [m/s]."""
+    for m in range(states.shape[0]):
+        X, Z = complex(states[m, 0], states[m, 1]), complex(states[m, 2], states[m, 3])
+        dX, dZ = slow_velocity(form, omega, xi1, xi2, k1, rho2, F, kappa, W, X, Z)
+        found[m, 0], found[m, 1], found[m, 2], found[m, 3] = dX.real, dX.imag, dZ.real, dZ.imag
+
+
+@kernel
+def _slope_at(form, omega, xi1, xi2, k1, rho2, W, X, Z, dX, dZ):
+    """`frequency_slope` where X' and Z' are known."""
+    p, _, q, r, _, _, _ = coefficients(form, W, omega, xi1, xi2, k1, rho2)
     if form == PAPER:
         ap, ep = complex(-2.0 * omega, 0.0), 2.0 * rho2 * omega
         g1p, g2p, pp, qp = 0j, complex(0.0, xi2), 0j, 0j
@@ -46,21 +61,21 @@ def frequency_slope(form, omega, xi1, xi2, k1, rho2, F, kappa, W, X, Z):
 
 
 @kernel
-def _derivative(form, omega, xi1, xi2, k1, rho2, F, kappa, W, y, columns, out):
-    """Time derivative of the columns (4 columns numbers, row by row) into `out`."""
+def _derivative(form, omega, xi1, xi2, k1, rho2, F, kappa, W, y, columns, out, J):
+    """Time derivative of the columns (4 columns numbers, row by row) into `out`; J is room for the Jacobian."""
     X, Z = complex(y[0], y[columns]), complex(y[2 * columns], y[3 * columns])
     dX, dZ = slow_velocity(form, omega, xi1, xi2, k1, rho2, F, kappa, W, X, Z)
     out[0], out[columns], out[2 * columns], out[3 * columns] = dX.real, dX.imag, dZ.real, dZ.imag
     if columns == 1:
         return
-    J = slow_jacobian(form, omega, xi1, xi2, k1, rho2, kappa, W, Z)
+    put_jacobian(form, omega, xi1, xi2, k1, rho2, kappa, W, Z, J)
     for i in range(4):
         for c in range(1, columns):
             out[i * columns + c] = 0.0
         for j in range(4):
             for c in range(1, columns):
                 out[i * columns + c] += J[i, j] * y[j * columns + c]
-    sX, sZ = frequency_slope(form, omega, xi1, xi2, k1, rho2, F, kappa, W, X, Z)
+    sX, sZ = _slope_at(form, omega, xi1, xi2, k1, rho2, W, X, Z, dX, dZ)
     last = columns - 1
     out[last] += sX.real
     out[columns + last] += sX.imag
@@ -69,7 +84,7 @@ def _derivative(form, omega, xi1, xi2, k1, rho2, F, kappa, W, y, columns, out):
 
 
 @kernel
-def _step(form, omega, xi1, xi2, k1, rho2, F, kappa, W, y, columns, h, k, new):
+def _step(form, omega, xi1, xi2, k1, rho2, F, kappa, W, y, columns, h, k, new, J):
     """One step of length h into `new`; the stages into `k` (12, 4 columns)."""
     count = 4 * columns
     for stage in range(STAGES + 1):
@@ -81,7 +96,7 @@ def _step(form, omega, xi1, xi2, k1, rho2, F, kappa, W, y, columns, h, k, new):
                 for i in range(count):
                     new[i] += a * k[j, i]
         if stage < STAGES:
-            _derivative(form, omega, xi1, xi2, k1, rho2, F, kappa, W, new, columns, k[stage])
+            _derivative(form, omega, xi1, xi2, k1, rho2, F, kappa, W, new, columns, k[stage], J)
 
 
 @kernel
@@ -107,7 +122,7 @@ def arc(
 
     Step ends go into `times` (rows,) and `states` (rows, 4) as far as these reach.
     """
-    k, new = np.empty((STAGES, 4 * columns)), np.empty(4 * columns)
+    k, new, J = np.empty((STAGES, 4 * columns)), np.empty(4 * columns), np.empty((4, 4))
     t, h, steps = 0.0, min(duration, 0.3 / W), 0
     kept = 0
     if times.size > 0:
@@ -117,7 +132,7 @@ def arc(
         kept = 1
     while t < duration:
         h = min(h, duration - t)
-        _step(form, omega, xi1, xi2, k1, rho2, F, kappa, W, y, columns, h, k, new)
+        _step(form, omega, xi1, xi2, k1, rho2, F, kappa, W, y, columns, h, k, new, J)
         error = _error(h, columns, k, size_x, size_z, tolerance)
         if not math.isfinite(error) or h < 1e-12 * duration or steps > most:
             return -1
@@ -171,7 +186,7 @@ def _radial(form, omega, xi1, xi2, k1, rho2, F, kappa, W, y, which):
 @kernel
 def envelope(form, omega, xi1, xi2, k1, rho2, F, kappa, W, times, states, out):
     """Smallest and largest |X|, smallest and largest |Z| on the way through step ends, located within the steps."""
-    k, new = np.empty((STAGES, 4)), np.empty(4)
+    k, new, J = np.empty((STAGES, 4)), np.empty(4), np.empty((4, 4))
     for which in range(2):
         least, most = math.inf, 0.0
         for n in range(times.size - 1):
@@ -183,7 +198,7 @@ def envelope(form, omega, xi1, xi2, k1, rho2, F, kappa, W, times, states, out):
             lo, hi = 0.0, times[n + 1] - times[n]
             for _ in range(12):
                 middle = (lo * b - hi * a) / (b - a)
-                _step(form, omega, xi1, xi2, k1, rho2, F, kappa, W, states[n], 1, middle, k, new)
+                _step(form, omega, xi1, xi2, k1, rho2, F, kappa, W, states[n], 1, middle, k, new, J)
                 size, f = _radial(form, omega, xi1, xi2, k1, rho2, F, kappa, W, new, which)
                 if f * b < 0.0:
                     lo, a = hi, b

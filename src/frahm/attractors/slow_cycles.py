@@ -14,10 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frahm.arrays import Floats, eigenvalues
-from frahm.attractors.slow_arcs import MOST_STEPS, envelope, shoot
+from frahm.attractors.slow_arcs import MOST_STEPS, envelope, shoot, velocities
 from frahm.attractors.slow_arcs import arc as slow_arc
 from frahm.slow_flow import SlowFlow
-from frahm.slow_flow.motion import slow_velocity
 
 NODES = 16
 TOLERANCE = 1e-10
@@ -99,15 +98,16 @@ class Shooting:
         self._root = np.sqrt(self.count)
         self._size = scales.state * self._root
         self._nodes = nodes
-        speed = np.array([self.velocity(node, frequency) for node in nodes]) / scales.state
+        speed = self.velocities(nodes, frequency) / scales.state
         self._across = speed / np.linalg.norm(speed, axis=1, keepdims=True)
         self.start = self.pack(nodes, durations, frequency)
         self._known: dict[bytes, tuple[Floats, Floats, bool]] = {}
 
-    def velocity(self, node: Floats, frequency: float) -> Floats:
-        """Time derivative (4,) of a state [m/s]."""
-        dX, dZ = slow_velocity(*self.head, frequency, complex(*node[:2]), complex(*node[2:]))
-        return np.array([dX.real, dX.imag, dZ.real, dZ.imag])
+    def velocities(self, states: Floats, frequency: float) -> Floats:
+        """Time derivatives (M, 4) of states (M, 4) [m/s]."""
+        found = np.empty_like(states)
+        velocities(*self.head, frequency, states, found)
+        return found
 
     def pack(self, nodes: Floats, durations: Floats, frequency: float) -> Floats:
         """Scaled unknowns y (5 M + 1,): nodes, logarithms of the durations, Omega."""
@@ -143,15 +143,16 @@ class Shooting:
         ends, maps, good = self._arcs(y)
         if not good:
             return R, J
-        for m in range(M):
-            rows, after = slice(4 * m, 4 * m + 4), 4 * ((m + 1) % M)
-            R[rows] = (ends[m] - nodes[(m + 1) % M]) / size
-            J[rows, rows] += maps[m, :, :4] * size / size[:, None]
-            J[rows, after : after + 4] -= np.eye(4)
-            J[rows, 4 * M + m] = self.velocity(ends[m], W) * durations[m] * self._root / size
-            J[rows, -1] = maps[m, :, 4] * self.scales.frequency / size
-            R[4 * M + m] = self._across[m] @ ((nodes[m] - self._nodes[m]) / size)
-            J[4 * M + m, rows] = self._across[m]
+        off = (nodes - self._nodes) / size
+        R[: 4 * M] = ((ends - np.roll(nodes, -1, axis=0)) / size).ravel()
+        R[4 * M :] = np.vecdot(self._across, off)
+        own = np.arange(4 * M).reshape(M, 4)
+        rows, lengths = own[:, :, None], np.arange(4 * M, 5 * M)
+        J[rows, own[:, None]] = maps[:, :, :4] * size / size[:, None]
+        J[rows, np.roll(own, -1, axis=0)[:, None]] -= np.eye(4)
+        J[own, lengths[:, None]] = self.velocities(ends, W) * durations[:, None] * self._root / size
+        J[: 4 * M, -1] = (maps[:, :, 4] * self.scales.frequency / size).ravel()
+        J[lengths[:, None], own] = self._across
         return R, J
 
     def cycle(self, y: Floats) -> SlowCycle | None:
@@ -160,7 +161,7 @@ class Shooting:
         _, maps, good = self._arcs(y)
         if not good:
             return None
-        trivial, B = _deflated(maps, self.velocity(nodes[0], W), self.scales.state)
+        trivial, B = _deflated(maps, self.velocities(nodes[:1], W)[0], self.scales.state)
         times, states = self._path(nodes, durations, W)
         sizes = np.empty(4)
         envelope(*self.head, W, times, states, sizes)
@@ -205,22 +206,22 @@ class Shooting:
         moves = direction[: 4 * M].reshape(M, 4)
         slide = np.sum(self._across * moves, axis=1)
         nodes, durations, W = self.unpack(self.start)
-        speed = [np.linalg.norm(self.velocity(node, W) / self._size) for node in nodes]
-        late = slide / np.array(speed)
+        speed = self.velocities(nodes, W) / self._size
+        late = slide / np.sqrt(np.vecdot(speed, speed))
         turns = direction[4 * M : 5 * M] - (np.roll(late, -1) - late) / (durations * self._root)
         return np.concatenate([(moves - slide[:, None] * self._across).ravel(), turns, direction[-1:]])
 
     def crossing(self, y: Floats) -> float:
         """Least cosine between the flow and the normal of a section: where it comes to 0 a section is lost."""
         nodes, _, W = self.unpack(y)
-        speed = np.array([self.velocity(node, W) for node in nodes]) / self.scales.state
+        speed = self.velocities(nodes, W) / self.scales.state
         return float(np.min(np.sum(self._across * speed, axis=1) / np.linalg.norm(speed, axis=1)))
 
     def tests(self, y: Floats) -> tuple[float, float]:
         """Test functions of period doubling (a multiplier -1) and torus (a pair on the unit circle)."""
         nodes, _, W = self.unpack(y)
         _, maps, _ = self._arcs(y)
-        _, B = _deflated(maps, self.velocity(nodes[0], W), self.scales.state)
+        _, B = _deflated(maps, self.velocities(nodes[:1], W)[0], self.scales.state)
         return multiplier_tests(eigenvalues(B))
 
 

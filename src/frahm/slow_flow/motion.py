@@ -27,6 +27,14 @@ def slow_velocity(form, omega, xi1, xi2, k1, rho2, F, kappa, W, X, Z):
 @kernel
 def slow_jacobian(form, omega, xi1, xi2, k1, rho2, kappa, W, Z):
     """Jacobian (4, 4) of (Re X', Im X', Re Z', Im Z') by (Re X, Im X, Re Z, Im Z) [1/s]."""
+    J = np.empty((4, 4))
+    put_jacobian(form, omega, xi1, xi2, k1, rho2, kappa, W, Z, J)
+    return J
+
+
+@kernel
+def put_jacobian(form, omega, xi1, xi2, k1, rho2, kappa, W, Z, J):
+    """`slow_jacobian` into J."""
     p, a, q, r, e, g1, g2 = coefficients(form, W, omega, xi1, xi2, k1, rho2)
     k = 0.75 * kappa
     N = Z.real * Z.real + Z.imag * Z.imag
@@ -36,12 +44,10 @@ def slow_jacobian(form, omega, xi1, xi2, k1, rho2, kappa, W, Z):
     zx = (e - q * xx) / r
     zz = (e - g2 - 2.0 * k * N - q * xz) / r
     zc = (-k * Z * Z - q * xc) / r
-    J = np.empty((4, 4))
     _insert(J, 0, 0, xx, 0j)
     _insert(J, 0, 2, xz, xc)
     _insert(J, 2, 0, zx, 0j)
     _insert(J, 2, 2, zz, zc)
-    return J
 
 
 @kernel

@@ -22,7 +22,7 @@ Integers = NDArray[np.int64]
 class Structure(NamedTuple):
     """Where the numbers stand, the same for every system of a batch; lists as addresses, see `frahm.lanes`.
 
-    Rows and columns are places of coordinates in the state of eight lanes. Entries of `linear` are kept
+    Rows and columns are places of coordinates in the state of all lanes. Entries of `linear` are kept
     per row r from start[r] to start[r + 1], those of `reach` and `input` per element likewise. `laws` are the codes of
     `frahm.absorbers.packed`.
     """

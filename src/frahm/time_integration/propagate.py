@@ -1,4 +1,4 @@
-"""Many trajectories through eight lanes: a lane that is done, or has failed, takes the next trajectory.
+"""Many trajectories through a few lanes: a lane that is done, or has failed, takes the next trajectory.
 
 Every trajectory keeps its own step and its own error control, so that its result is the same number for number whatever
 runs beside it and however many threads there are.
@@ -24,13 +24,15 @@ from frahm.time_integration.window import ROWS, clear_window, watch_window
 
 DONE, DIVERGED, STEP_LIMIT, STEP_TOO_SMALL = 0, 1, 2, 3
 
-# Rows of a block, eight lanes each.
-_WHOLE, _PART, _STEP, _TARGET_WHOLE, _TARGET_PART = 0, 8, 16, 24, 32  # turns done, next step, turns to reach
-_PERIOD, _PHASE, _NEXT_WHOLE, _NEXT_PART = 40, 48, 56, 64  # [s], [turns] at the start, turns at the next sample
-_X_SIZE, _V_SIZE, _X_LEAST, _V_LEAST, _X_BOUND, _V_BOUND = 72, 80, 88, 96, 104, 112
-_ACCEPTED, _ATTEMPTED, _GROWTH, _WATCHING, _LANDED, _EVENT, _LIVE = 120, 128, 136, 144, 152, 160, 168
-_DUE, _TURNS, _ERROR, _GOOD, _X_NEW, _V_NEW = 176, 184, 192, 200, 208, 216  # the step being judged
-_BLOCK = 224
+# Rows of a block, a number for every lane each, by where they begin.
+(
+    _WHOLE, _PART, _STEP, _TARGET_WHOLE, _TARGET_PART,  # turns done, next step, turns to reach
+    _PERIOD, _PHASE, _NEXT_WHOLE, _NEXT_PART,  # [s], [turns] at the start, turns at the next sample
+    _X_SIZE, _V_SIZE, _X_LEAST, _V_LEAST, _X_BOUND, _V_BOUND,
+    _ACCEPTED, _ATTEMPTED, _GROWTH, _WATCHING, _LANDED, _EVENT, _LIVE,
+    _DUE, _TURNS, _ERROR, _GOOD, _X_NEW, _V_NEW,  # the step being judged
+    _BLOCK,
+) = range(0, 29 * LANES, LANES)  # fmt: skip
 
 _FIRST_STEP = 0.01  # [turns]; the error control corrects it within a few steps
 _SMALLEST_STEP = 1e-15  # [turns]; the phase within a period resolves 1e-16
@@ -76,7 +78,7 @@ class Kept(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Where the eight lanes work; as arrays, and once more as addresses for the inner loops."""
+    """Where the lanes work; as arrays, and once more as addresses for the inner loops."""
 
     lanes: Any
     start: Any
@@ -96,7 +98,7 @@ def make_room(size: int) -> Room:
 
 @kernel
 def propagate(structure, systems, numbers, numbers_at, room, room_at, runs, plan, findings):
-    """Run all trajectories; `numbers` is room for eight systems, `systems` the tables it is filled from."""
+    """Run all trajectories; `numbers` is room for a system in every lane, `systems` the tables it is filled from."""
     lanes, start, window = room.lanes, room.start, room.window
     run, sample = np.full(LANES, -1), np.zeros(LANES, dtype=np.int64)
     lanes[:] = 0.0

@@ -1,7 +1,7 @@
-"""One Dormand-Prince step of eight trajectories at a time.
+"""One Dormand-Prince step of a trajectory in every lane at a time.
 
 A lane holds one trajectory with its own step, phase and system. The state of a block is flat: component i of lane l at
-8 i + l, displacements first, then velocities; m numbers in all. `k` holds the stages one after the other, m numbers
+LANES i + l, displacements first, then velocities; m numbers in all. `k` holds the stages one after the other, m numbers
 each, `h` is the step in seconds and `turns` the step in periods of the forcing. Arrays come as addresses.
 
 Method and step control: Hairer, Norsett and Wanner (1993), doi 10.1007/978-3-540-78862-1, sections II.4 and II.10.

@@ -70,11 +70,12 @@ def lane_forces(kind, start, count, table, z, w, out):
 
 
 @cases
-def test_eight_lanes_give_the_same_forces(law):
+def test_all_lanes_give_the_same_forces(law):
     codes, table = pack_laws([law])
     lanes = np.repeat(table, LANES)
-    for part in (slice(0, 8), slice(3, 11)):
-        z, w, out = np.ascontiguousarray(Z[part]), np.ascontiguousarray(W[part]), np.empty(LANES)
+    for first in (0, 3):
+        at = np.arange(first, first + LANES) % Z.size
+        z, w, out = Z[at], W[at], np.empty(LANES)
         lane_forces(*codes[0], address(lanes), address(z), address(w), address(out))
         assert out == pytest.approx(law.force(z, w), rel=2e-14, abs=1e-14)
 

@@ -6,6 +6,7 @@ from frahm.attractors.orbits import (
     _adapted_root,
     monodromy_along,
     orbit_at,
+    orbit_size,
     points_needed,
     refined,
     unstable_directions,
@@ -74,3 +75,26 @@ def test_the_adapted_norm_shrinks_however_dependent_the_eigenvectors_are():
         R = _adapted_root(Phi, rho)
         shrinkage = np.linalg.norm(R @ Phi @ np.linalg.inv(R), 2)
         assert shrinkage <= 1 - 0.49 * (1 - rho)
+
+
+def test_a_few_balls_are_enough_for_an_orbit_of_many_periods():
+    """Motions near it come through one of them within a turn, from whatever state of the orbit they start."""
+    case = frahm.load_case("jacket-pipe")
+    system = frahm.build_system(case)
+    found = frahm.find_attractors(case, detuning=0.047, samples=4)
+    assert found[0].period_multiple == 45
+    strobe = stroboscope(system, found.frequency)
+    orbit = orbit_at(strobe, found[0].representative_state, 45)
+    assert orbit.multiple == 45
+    assert 2 <= len(orbit.balls) <= 4
+    beside = np.array(orbit.states) * (1 + 1e-5)
+    seen = strobe.run(beside, 450, strobes=45)
+    assert np.all(orbit.attracts(seen.strobes))
+    assert not np.all(orbit.contains(seen.states))
+    away = strobe.run(beside * 1.5, 450, strobes=45)
+    caught = orbit.attracts(away.strobes)  # the others are on the orbit's twin
+    assert 0 < np.count_nonzero(caught) < 45
+    size = orbit_size(strobe, orbit.states)
+    later = strobe.run(away.states, 1800).states
+    assert orbit.holds(later[caught], size)
+    assert not any(orbit.holds(state[None], size) for state in later[~caught])

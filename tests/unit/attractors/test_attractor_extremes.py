@@ -5,6 +5,7 @@ import pytest
 from scipy.stats import genextreme
 
 import frahm
+from frahm.attractors.clouds import peaks_of_long_motions
 from frahm.attractors.extremes import enough, expected_peak, poisson_interval
 from frahm.time_integration import integrate_batch
 
@@ -93,6 +94,23 @@ def test_the_peak_is_the_largest_and_the_expected_one_is_exceeded_once_in_its_ti
     windows = peaks.reshape(4, 20, 40).max(axis=1)  # of 1000 periods each, as once was called the peak
     assert np.median(windows) < chaos.pipe_peak
     assert np.mean(windows > chaos.pipe_peak) < 0.25
+
+
+def test_long_motions_are_followed_only_where_rare_peaks_are_asked_for(monkeypatch):
+    followed = []
+
+    def follow(*asked):
+        followed.append(asked)
+        return peaks_of_long_motions(*asked)
+
+    monkeypatch.setattr("frahm.attractors.finding.peaks_of_long_motions", follow)
+    chaos = frahm.find_attractors(BURSTS, frequency=1.0, samples=8)[0]
+    assert chaos.kind == "chaotic"
+    assert not followed
+    low, high = chaos.pipe_peak_expected_interval
+    assert low <= chaos.pipe_peak_expected <= high
+    assert chaos.relative_peak_expected > 0
+    assert len(followed) == 1
 
 
 def test_the_bound_of_a_periodic_motion_is_its_peak():

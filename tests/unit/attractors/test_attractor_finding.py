@@ -123,3 +123,19 @@ def test_a_beat_of_nearly_fifteen_periods_is_modulated_and_not_unsettled():
         last = late.x1[-3000 * 8 :]
         assert found[0].pipe_peak == pytest.approx(np.max(np.abs(last)), rel=0.08)  # 8 samples a period cut the peak
         assert found[0].pipe_rms == pytest.approx(np.sqrt(np.mean(last**2)), rel=2e-3)
+
+
+def test_no_state_is_settled_twice(monkeypatch):
+    """The first of the sample and rest are settled among the seeds, and counted from there."""
+    asked, settle = [], Settling.settle
+
+    def recorded(self, states, resume=True):
+        asked.extend(map(tuple, states))
+        return settle(self, states, resume)
+
+    monkeypatch.setattr(Settling, "settle", recorded)
+    found = frahm.find_attractors("jacket-pipe", detuning=0.2, samples=24)
+    assert found.samples == 24
+    assert found[0].basin_fraction == 1.0
+    assert found[0].from_rest
+    assert len(asked) == len(set(asked)) > 24
