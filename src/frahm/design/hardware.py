@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 
 from frahm.case import Case, PolynomialLaw
-from frahm.design.absorber import DesignedAbsorber, left_out
+from frahm.design.absorber import DesignedAbsorber, left_out, with_design
 from frahm.design.springs import ALLOWED_SHEAR, MOST_SPRING_STROKE, CoilSprings, coil_springs, why_not_wound
 from frahm.errors import check_number
 
@@ -55,12 +55,15 @@ def transverse_pair_ratio(stroke_over_length: float) -> float:
     return 2 * (1 - 1 / math.hypot(1.0, s)) / s**2
 
 
-def as_built(designed: Case, design: DesignedAbsorber, stroke: float, room: float | None = None) -> Case:
-    """A case with a design, with the exact force of the transverse springs of the sheet in place of the cubic laws.
+def as_built(
+    case: Case, design: DesignedAbsorber, stroke: float, room: float | None = None, replaced: int | None = None
+) -> Case:
+    """The case with the exact force of the transverse springs of the sheet in place of the cubic laws of a design.
 
     2 k_s y (1 - L/sqrt(L^2 + y^2)) = k3 y^3 (1 - 3/4 s^2 + 5/8 s^4 - ...) with s = y/L, L a quarter of which is the
     stroke, or the room there is: three terms miss it by less than 2e-4 up to there, and stay a hardening spring beyond.
     """
+    designed = with_design(case, design, replaced=replaced)
     host, new = designed.pipe.mass, list(designed.absorbers)
     for at, one in enumerate(design.absorbers):
         if one.kappa:

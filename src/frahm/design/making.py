@@ -26,7 +26,7 @@ def made(work: DesignWork) -> None:
     found.sensitivities = sensitivities(design, problem.modes_of, problem.disturbances, screening, work.case.pipe.mass)
     if any(one.kappa for one in design.absorbers) and not any(one.quintic for one in design.absorbers):
         built, most = (
-            problem.modes(as_built(problem.case_with(design), design, stroke, room)),
+            problem.modes(as_built(work.case, design, stroke, room, settings.counts[-1])),
             FAR * settings.force_margin,
         )
         found.built = work.worst(built)
