@@ -32,13 +32,14 @@ _MOST_RATIO = 1e12  # of the largest to the smallest |u|^2 looked at, where noth
 # columns of an absorber at one frequency: k, q, d, m Omega^2, motions and |Z|^2 where answers turn, last |Z|^2
 _K, _Q, _REAL, _IMAG, _INERTIA, _FIRST, _LAST, _UPPER, _LOWER, _SQUARE = range(10)
 _LOW, _MID, _HIGH = 0, 1, 2  # answers of an absorber, by their size
-_SELDOM = 4  # frequencies of which one is asked for its slow flow
+_SELDOM = 2  # frequencies of which one is asked for its slow flow
 _SETTLED = 1e-4  # ln of the squared force
 _ROUNDS = 12  # of the refinement of a crossing at most
 _DIP = 0.9  # of the force at two places: a line between them that comes below hides an extreme
 _CLOSE = 3.0  # times the squared force: what a straight line shows of an extreme that may reach it
 _FALLEN = 0.99  # an extreme that is no nearer to this share of an end is none
 _CHORDS, _AT_END = 3, 0.02  # of the search for a dip, and the share of a chord from where on its end is the nearest
+_PLACES = 10  # between two, of which the best is where an extreme is looked for
 _SECTIONS = 10  # of the search for an extreme
 _OVERSHOT = 0.5  # of what three places differ by: how far an extreme may lie beyond the middle one
 _WEAKEST, _STRONGEST = 0.3, 2.0  # forces between which births are looked for [-]
@@ -60,7 +61,8 @@ def _turning_motions(k, q, d, wm):
         return math.inf, math.inf, math.inf, math.inf
     D, R = d.real * d.real + d.imag * d.imag, d.real
     if q > 0.0:
-        most = _beyond(k, q, D, R, 1.0, 0.0)
+        near = math.sqrt(math.sqrt(D) / q)  # where the part of the fifth power is as stiff as the rest
+        most = _beyond(k, q, D, R, 1.0, D * near)
         there, low, high = _extremes(k, q, D, R, 1.0, most)
         if not there:
             return math.inf, math.inf, math.inf, math.inf
@@ -402,11 +404,28 @@ def _narrowed(choice, left, right, a, laws):
 
 
 @kernel
+def _best_bracket(choice, left, right, a, laws):
+    """Two ln s around the place of least force among a few: evenly spaced ones, and the middle of `_narrowed`."""
+    lo, hi = _narrowed(choice, left, right, a, laws)
+    z = _ratio(choice, 0.5 * (lo + hi), a, laws)
+    least, step = _force(0.5 * (lo + hi), z), (right - left) / _PLACES
+    for j in range(1, _PLACES):
+        at = left + step * j
+        force = _force(at, _ratio(choice, at, a, laws))
+        if force < least:
+            least, lo, hi = force, at - step, at + step
+    return lo, hi
+
+
+@kernel
 def _extreme(choice, left, right, sign, a, laws):
-    """s between two of one choice where `sign` times the force needed is least, and that force: golden sections."""
+    """s between two of one choice where `sign` times the force needed is least, and that force.
+
+    By golden sections around the best of a few places, of which some lie where the dip of the force is expected.
+    """
     x0, x1 = math.log(left), math.log(right)
     if sign > 0.0:
-        x0, x1 = _narrowed(choice, x0, x1, a, laws)
+        x0, x1 = _best_bracket(choice, x0, x1, a, laws)
     share = 0.5 * (math.sqrt(5.0) - 1.0)
     y0, y1 = x1 - share * (x1 - x0), x0 + share * (x1 - x0)
     f0, f1 = _force(y0, _ratio(choice, y0, a, laws)), _force(y1, _ratio(choice, y1, a, laws))

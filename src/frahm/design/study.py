@@ -299,9 +299,18 @@ class DesignStudy:
             ),
             "margin_pipe_peak": labelled("margin_index", [p.worst_pipe_peak for p in curve], peak, "m"),
         }
+        most = max([1, *(r.design.count for r in rivals if r.design is not None)])
+        variables["comparison_count"] = labelled("rival", [r.count for r in rivals], "number of absorbers", "1")
         for name, unit in UNITS.items():
             values = [math.nan if r.design is None else getattr(r.design, name) for r in rivals]
             variables[f"comparison_{name}"] = labelled("rival", values, f"{name} over mass of the pipe", unit)
+            each = np.full((len(rivals), most), math.nan)
+            for at, rival in enumerate(rivals):
+                for number, row in enumerate(absorber_rows(rival.design)):
+                    each[at, number] = row[name]
+            variables[f"comparison_each_{name}"] = labelled(
+                ("rival", "absorber"), each, f"{name} over mass of the pipe, of each absorber", unit
+            )
             values = [getattr(p.design, name) for p in curve]
             variables[f"margin_{name}"] = labelled("margin_index", values, f"{name} over mass of the pipe", unit)
         return xr.Dataset(variables, attrs={"frahm": self.version, "case": self.case.name, "verdict": self.verdict})

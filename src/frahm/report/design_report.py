@@ -11,7 +11,7 @@ from frahm import readable
 from frahm.analysis import FORCE_MARGIN, defaulted_fields, provenance
 from frahm.analysis.decision import together
 from frahm.case import Case, Design, field_table, field_values
-from frahm.design import FAR, DesignStudy, Objective, Rival, design_summary
+from frahm.design import FAR, DesignedAbsorber, DesignStudy, Objective, Rival, design_summary
 from frahm.files import write_text
 from frahm.loads import lock_in_band, resonant_shedding, vortex_shedding
 from frahm.plotting.decision import DEVICES, Marks
@@ -52,10 +52,11 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         asked=asked_rows(study),
         comparison_head=comparison_head(objective),
         comparison=[*(comparison_row(rival, objective, searched) for rival in study.comparison), ropes_row(objective)],
+        by_count=by_count_rows(study),
         error_head=["Device", *(f"{100 * (r - 1):+.3g} %" if r != 1 else "0 %" for r in study.errors)],
         error_rows=error_rows(study),
         trade_off=[
-            (f"{p.force_margin:g}", number(p.design.linear), number(p.design.kappa, 5), number(p.design.xi2),
+            (f"{p.force_margin:g}", _each(p.design, "linear"), _each(p.design, "kappa", 5), _each(p.design, "xi2"),
              _value(p.value, objective), "yes" if p.verified else "no")
             for p in study.trade_off
         ],
@@ -122,7 +123,8 @@ def missed_below(study: DesignStudy) -> str:
 
 def least_stroke(study: DesignStudy) -> str:
     """Motion of the mass below which no absorber balances the force, at the pipe's frequency."""
-    ratio = study.best.design.rho2 if study.best.design else math.nan
+    design = study.best.design
+    ratio = sum(one.rho2 for one in design.absorbers) if design else math.nan
     case = study.case
     lift = resonant_shedding(case).lift * float(case.pipe.modal.lift_lengths[0]) / case.pipe.length
     return readable.length(lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
@@ -159,7 +161,8 @@ def comparison_row(rival: Rival, objective: Objective, searched: float) -> tuple
     parameters: tuple[Any, ...] = ("-",) * 4
     name = DEVICES[rival.name]
     if design is not None:
-        parameters = tuple(number(getattr(design, name), 4) for name in ("rho2", "linear", "kappa", "xi2"))
+        parameters = tuple(_each(design, name, 4) for name in ("rho2", "linear", "kappa", "xi2"))
+        name += f", {design.count} absorbers" if design.count > 1 else ""
         name += f", fifth power {number(design.quintic)} 1/(m⁴ s²)" if design.quintic else ""
         name += f", at {number(design.position)} m" if design.position is not None else ""
     more = () if _is_peak(objective) else (_value(rival.value, objective),)
@@ -167,6 +170,24 @@ def comparison_row(rival: Rival, objective: Objective, searched: float) -> tuple
         name, *parameters, *more, readable.in_mm(rival.worst_pipe_peak), readable.motion(rival.kind), _stroke(rival),
         _margin(rival.force_margin, searched), _basis(rival), "yes" if rival.verified else "no",
     )  # fmt: skip
+
+
+def _each(design: DesignedAbsorber, name: str, digits: int = 4) -> str:
+    """A parameter of every absorber."""
+    return " · ".join(number(getattr(one, name), digits) for one in design.absorbers)
+
+
+def by_count_rows(study: DesignStudy) -> list[tuple[str, ...]]:
+    """Best design of every family and number of absorbers, where there were several to choose from."""
+    if len(study.settings.counts) == 1:
+        return []
+    return [
+        (
+            DEVICES[one.name], str(one.count), *(_each(one.design, name) for name in ("linear", "kappa", "xi2")),
+            _value(one.value, study.objective), "yes" if one.verified else "no",
+        )
+        for one in study.by_count if one.design is not None
+    ]  # fmt: skip
 
 
 def ropes_row(objective: Objective) -> tuple[str, ...]:
