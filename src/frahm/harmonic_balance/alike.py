@@ -7,6 +7,8 @@ leave less to be searched.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import numpy as np
 
 from frahm.absorbers import Law
@@ -20,11 +22,14 @@ from frahm.harmonic_balance.seeds import Seed
 from frahm.systems import Element, System
 
 _EQUAL = 1e-9  # relative: numbers that differ by rounding
+_SAME_MOTION = 1e-6  # relative difference of two motions that are one
+
+Harmonics = Mapping[int, Complexes]
 
 
 def moving_alike(system: System) -> System | None:
     """The system of the motions in which all interchangeable coordinates are equal; None if there are none."""
-    groups = _groups(system)
+    groups = interchangeable(system)
     if len(groups) == system.size:
         return None
     P = np.zeros((system.size, len(groups)))
@@ -57,7 +62,25 @@ def _whole(search: Search, alike: Search, u: Complexes) -> Complexes:
     return np.asarray(np.linalg.lstsq(search.problem.directions.T.astype(complex), z, rcond=None)[0])
 
 
-def _groups(system: System) -> list[list[int]]:
+def are_exchanged(groups: Sequence[list[int]], one: Harmonics, other: Harmonics) -> bool:
+    """Whether two motions (k: X_k of all coordinates) are one but for an exchange of coordinates within groups."""
+    ks = sorted({*one, *other})
+    a, b = (np.array([motion.get(k, np.zeros(len(motion[1]))) for k in ks]) for motion in (one, other))
+    close = _SAME_MOTION * float(np.max(np.abs(a)))
+    left = [i for i in range(a.shape[1]) if not any(i in group for group in groups)]
+    if np.max(np.abs(a[:, left] - b[:, left]), initial=0.0) > close:
+        return False
+    for group in groups:
+        waiting = list(group)
+        for i in group:
+            partner = next((j for j in waiting if np.max(np.abs(a[:, i] - b[:, j])) <= close), None)
+            if partner is None:
+                return False
+            waiting.remove(partner)
+    return True
+
+
+def interchangeable(system: System) -> list[list[int]]:
     """Coordinates, those that can be exchanged together."""
     groups: list[list[int]] = []
     for i in range(system.size):

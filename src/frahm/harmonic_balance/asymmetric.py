@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy.linalg
 
 from frahm.arrays import Floats
+from frahm.continuation.dense import factorise, solve_factorised
 from frahm.harmonic_balance.branch import Bifurcation, Point, SolutionBranch, described, located, points_of
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.following import followed, lies_on
@@ -152,10 +152,12 @@ def _asymmetric_start(search: Search, point: Point) -> tuple[Floats, int] | None
 
 def _null_vector(J: Floats) -> Floats:
     """Unit vector that a nearly singular matrix maps to nearly nothing, by inverse iteration."""
-    factors = scipy.linalg.lu_factor(J + _TILT * np.linalg.norm(J) * np.eye(len(J)), check_finite=False)
+    factors, pivots = J + _TILT * np.linalg.norm(J) * np.eye(len(J)), np.empty(len(J), np.int64)
+    factorise(factors, pivots, len(J))
     null = np.random.default_rng(1).standard_normal(len(J))
     for _ in range(3):
-        null = scipy.linalg.lu_solve(factors, null / np.linalg.norm(null), check_finite=False)
+        null /= np.linalg.norm(null)
+        solve_factorised(factors, pivots, len(J), null)
     return np.asarray(null / np.linalg.norm(null))
 
 

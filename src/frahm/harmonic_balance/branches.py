@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -35,12 +36,17 @@ def find_branches(search: Search, asymmetric: bool = True, at: float | None = No
     branches: list[SolutionBranch] = []
     starts = starts_of(search)
     everywhere = starts.everywhere if at is None else np.append(at, starts.everywhere)
-    seeds = _seeds_of_motions_alike(search, asymmetric, at)
-    seeds += [seed for W in everywhere for seed in seeder.at(float(W), search.x_scale)]
-    seeds += [seed for W in starts.third for seed in seeder.at(float(W), search.x_scale) if 3 in seed.harmonics]
-    seeds += [seed for extreme in starts.extremes for seed in seeds_beside(search, extreme)]
-    about_others = [seed for seed in seeds if odd and 0 in seed.harmonics]
-    _follow_new(search, [seed for seed in seeds if not odd or 0 not in seed.harmonics], branches)
+    seeds = [seed for W in everywhere for seed in seeder.at(float(W), search.x_scale)]
+    others = _seeds_of_motions_alike(search, asymmetric, at)
+    others += [seed for W in starts.third for seed in seeder.at(float(W), search.x_scale) if 3 in seed.harmonics]
+    others += [seed for extreme in starts.extremes for seed in seeds_beside(search, extreme)]
+    about_others = [seed for seed in others + seeds if odd and 0 in seed.harmonics]
+    about_zero = [[seed for seed in part if not odd or 0 not in seed.harmonics] for part in (others, seeds)]
+    _follow_new(search, about_zero[0], branches)
+    if seeder.shared is None:
+        _follow_new(search, about_zero[1], branches)
+    else:
+        _follow_where_more(search, about_zero[1], branches)
     if seeder.spring is not None and third_harmonic(search, branches) > _STRONG_THIRD:
         spread = np.linspace(search.lo, search.hi, _STRONG_FREQUENCIES)
         strong = [seed for W in spread for seed in two_harmonic_seeds(search.problem, float(W), seeder.spring)]
@@ -74,6 +80,20 @@ def _follow_new(search: Search, seeds: list[Seed], branches: list[SolutionBranch
         start = None if search.budget.reached else solve_seed(search, seed, odd)
         if start is not None and not any(lies_on(search, branch, *start) for branch in branches):
             branches.append(followed(search, odd, *start))
+
+
+def _follow_where_more(search: Search, seeds: list[Seed], branches: list[SolutionBranch]) -> None:
+    """As `_follow_new`, from the frequencies at which there are more starts than responses on branches followed."""
+    for W, here in itertools.groupby(seeds, key=lambda seed: seed.frequency):
+        group = list(here)
+        if sum(_crossed(branch, W) for branch in branches) < len(group):
+            _follow_new(search, group, branches)
+
+
+def _crossed(branch: SolutionBranch, W: float) -> int:
+    """How many times a branch comes past a frequency."""
+    beyond = branch.points.frequency > W
+    return int(np.count_nonzero(beyond[1:] != beyond[:-1]))
 
 
 def third_harmonic(search: Search, branches: list[SolutionBranch]) -> float:

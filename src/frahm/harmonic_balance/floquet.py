@@ -77,7 +77,7 @@ def monodromy(pb, va, H, odd, W, u, Phi):
                     _, slopes[e, e], _ = polynomial_and_slopes(code[1], code[2], pb.table, z, 0.0)
             felt = _behind(slopes, va.flexibility) if soft else slopes
             for e in range(E):
-                for f in range(E):
+                for f in range(0 if soft else e, E if soft else e + 1):
                     values[e, f, j] = felt[e, f]
         if adaptive:
             tail = _unresolved(va, values, rates, slope, rate, h)
@@ -89,7 +89,7 @@ def monodromy(pb, va, H, odd, W, u, Phi):
                 for i in range(_NODES):
                     q[e, i] = np.sum(_TO_POWERS[i] * rates[e])
         for e in range(E):
-            for f in range(E):
+            for f in range(0 if soft else e, E if soft else e + 1):
                 for i in range(_NODES):
                     total = 0.0
                     for j in range(_NODES):
@@ -100,7 +100,7 @@ def monodromy(pb, va, H, odd, W, u, Phi):
             for i in range(n):
                 for c in range(width):
                     X[0, i, c], V[0, i, c] = Phi[i, start + c], Phi[n + i, start + c]
-            _taylor_step(va, p, q, h, X, V, Z, Y)
+            _taylor_step(va, soft, p, q, h, X, V, Z, Y)
             for i in range(n):
                 for c in range(width):
                     x, v = X[_ORDER, i, c], V[_ORDER, i, c]
@@ -198,8 +198,11 @@ def _steepest(pb, H, odd, u, slope):
 
 
 @kernel
-def _taylor_step(va, p, q, h, X, V, Z, Y):
-    """Power series of some columns over one step, in the time scaled to the step: term k is the k-th summand."""
+def _taylor_step(va, soft, p, q, h, X, V, Z, Y):
+    """Power series of some columns over one step, in the time scaled to the step: term k is the k-th summand.
+
+    Elements feel each other's slopes only where they hang on something `soft`.
+    """
     n, E = va.K.shape[0], va.feel.shape[0]
     rates = Y.shape[0] > 0
     for k in range(_ORDER):
@@ -230,7 +233,7 @@ def _taylor_step(va, p, q, h, X, V, Z, Y):
         for e in range(E):  # the element's force once, then pushed on every coordinate
             for c in range(_LANES):
                 Z[_ORDER, e, c] = 0.0
-            for f in range(E):
+            for f in range(0 if soft else e, E if soft else e + 1):
                 for m in range(min(k, _NODES - 1) + 1):
                     weight = p[e, f, m] * factor
                     for c in range(_LANES):

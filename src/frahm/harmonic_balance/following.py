@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from frahm.arrays import Floats
+from frahm.compiled import kernel
 from frahm.harmonic_balance.branch import Point, Points, SolutionBranch, point_between, undescribed
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.follow import CLOSED, follow
@@ -57,11 +59,10 @@ def lies_on(search: Search, branch: SolutionBranch, y: Floats, H: int) -> bool:
 
     Only steps that reach its frequency are looked at, or in which the frequency turns.
     """
-    n = unknowns(search.problem, H, branch.odd)
-    beyond = branch.points.frequency - y[n]
-    rise = branch.points.rise(search.problem, branch.odd)
-    steps = np.flatnonzero((beyond[:-1] * beyond[1:] <= 0) | (rise[:-1] * rise[1:] < 0))
-    return any(lies_in_step(search, branch, y, H, y[n], int(i)) for i in steps)
+    points, r, W = branch.points, search.problem.M11.shape[0], float(y[unknowns(search.problem, H, branch.odd)])
+    out = np.empty(len(points.Hs), np.int64)
+    near = out[: steps_near(r, branch.odd, points.ys, points.ts, points.Hs, y, H, search.x_scale, search.w_scale, out)]
+    return any(lies_in_step(search, branch, y, H, W, int(i)) for i in near)
 
 
 def lies_in_step(search: Search, branch: SolutionBranch, X: Floats, H: int, W: float, i: int) -> bool:
@@ -70,19 +71,61 @@ def lies_in_step(search: Search, branch: SolutionBranch, X: Floats, H: int, W: f
     n = unknowns(pb, H, odd)
     y = np.append(X[:n], W)
     scales = np.append(np.full(n, search.x_scale), search.w_scale)
-    a, b = (branch.points[k].with_unknowns(pb, odd, n) / scales for k in (i, i + 1))
-    here, chord = y / scales - a, b - a
-    length = float(np.linalg.norm(chord))
-    if length == 0.0:  # the branch was outside the window in between
-        return False
-    fraction = float(here @ chord) / length**2
-    if not -_OVERHANG <= fraction <= 1 + _OVERHANG or np.linalg.norm(here - fraction * chord) > _AWAY * length:
+    ends = branch.points.ys[i : i + 2], branch.points.Hs[i : i + 2]
+    fraction = share_of_step(pb.M11.shape[0], odd, *ends, 0, y, H, search.x_scale, search.w_scale)
+    if math.isnan(fraction):
         return False
     point = point_in_step(search, branch, i, fraction)
     if point is None:
         return False
     apart = (point.with_unknowns(pb, odd, n) - y) / scales
     return bool(np.linalg.norm(apart) < _SAME * np.linalg.norm(y[:n]) / search.x_scale)
+
+
+@kernel
+def steps_near(r, odd, ys, ts, Hs, y, H, x_scale, w_scale, out):
+    """Fill out with the steps of a branch on which a solution may lie; returns how many.
+
+    Only steps that reach its frequency are looked at, or in which the frequency turns.
+    """
+    W, count = y[size_of(r, H, odd)], 0
+    for i in range(Hs.size - 1):
+        here, there = size_of(r, Hs[i], odd), size_of(r, Hs[i + 1], odd)
+        reached = (ys[i, here] - W) * (ys[i + 1, there] - W) <= 0.0
+        if (reached or ts[i, here] * ts[i + 1, there] < 0.0) and not math.isnan(
+            share_of_step(r, odd, ys, Hs, i, y, H, x_scale, w_scale)
+        ):
+            out[count] = i
+            count += 1
+    return count
+
+
+@kernel
+def share_of_step(r, odd, ys, Hs, i, y, H, x_scale, w_scale):
+    """Share of step i of a branch at which the plane across its chord holds a solution; NaN if that is far from it."""
+    n = size_of(r, H, odd)
+    n0, n1 = size_of(r, Hs[i], odd), size_of(r, Hs[i + 1], odd)
+    chord = gap = along = 0.0
+    for j in range(n + 1):
+        a = ys[i, j] / x_scale if j < n0 else 0.0
+        b = ys[i + 1, j] / x_scale if j < n1 else 0.0
+        c = y[j] / x_scale
+        if j == n:
+            a, b, c = ys[i, n0] / w_scale, ys[i + 1, n1] / w_scale, y[n] / w_scale
+        chord += (b - a) ** 2
+        gap += (c - a) ** 2
+        along += (b - a) * (c - a)
+    if chord == 0.0:  # the branch was outside the window in between
+        return math.nan
+    share = along / chord
+    off = gap - share * along
+    return share if -_OVERHANG <= share <= 1.0 + _OVERHANG and off <= _AWAY * _AWAY * chord else math.nan
+
+
+@kernel
+def size_of(r, H, odd):
+    """Number of unknowns of r coordinates with harmonics up to H."""
+    return 2 * r * ((H + 1) // 2 if odd else H + 1)
 
 
 def point_in_step(search: Search, branch: SolutionBranch, i: int, fraction: float = 0.5) -> Point | None:

@@ -43,6 +43,17 @@ def missing(system: System, multipliers: Sequence[Complexes], largest: float) ->
     )
 
 
+def add_up(system: System, multipliers: Sequence[Complexes], largest: float) -> bool:
+    """Whether the indices of responses are all certain, and their sum is known to be that of all responses.
+
+    The same holds of the symmetric responses alone, the fixed points of the map over half a period to the opposite
+    state, with the multipliers of that map.
+    """
+    indices = [index(values) for values in multipliers]
+    expected = degree(system, _FAR * largest) if largest > 0 else None
+    return expected is not None and 0 not in indices and sum(indices) == expected
+
+
 def index(multipliers: Complexes) -> int:
     """Index of the fixed point with these multipliers, 1 or -1; 0 where rounding decides or a multiplier is unknown."""
     apart = 1 - multipliers

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from frahm.harmonic_balance.alike import moving_alike
 from frahm.harmonic_balance.births import MARGIN
 from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.describing import PER_DECADE
@@ -9,6 +10,11 @@ from frahm.harmonic_balance.follow import CLOSED, LEFT
 from frahm.harmonic_balance.search import Search
 
 _SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
+
+_NOT_SEARCHED = (
+    "Not searched: responses whose period is a multiple of the excitation's (period doublings are located, the doubled"
+    " motions not followed), and responses without any first-harmonic counterpart."
+)
 
 NONE_FOUND = "No periodic response was found: Newton's method failed from every seed."
 _NEAR = 0.01  # of a frequency: how far from it a detached curve may be and still reach there
@@ -30,10 +36,23 @@ def inventory_text(search: Search) -> str:
         start = _SPREAD
         if search.problem.odd and not seeder.buckled:
             start += ", about the mean 0 only"
+    return f"Branches were followed from {start}. {_NOT_SEARCHED}"
+
+
+def exchanges_text(search: Search) -> str:
+    """What to say of branches where absorbers are equal; nothing where none are."""
+    if moving_alike(search.system) is None:
+        return ""
+    return " Absorbers are equal: branches that differ only in which of them carries the motion are all listed."
+
+
+def continued_text() -> str:
+    """What is known where responses were continued from all solutions of one harmonic at one frequency."""
     return (
-        f"Branches were followed from {start}. Not searched: responses whose period is a multiple of the excitation's"
-        " (period doublings are located, the doubled motions not followed), and responses without any first-harmonic"
-        " counterpart."
+        "All solutions of the equations of one harmonic at this frequency were continued to exact responses, those and"
+        " the extremes of the force that just miss it were followed over the force, asymmetric responses from where"
+        " the symmetry is lost there. The fixed-point indices of all responses add up as they must, and those of the"
+        f" symmetric ones, too. {_NOT_SEARCHED}"
     )
 
 

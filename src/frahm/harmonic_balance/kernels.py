@@ -323,6 +323,8 @@ def add_slopes(pb, e, first, step, count, p, J):
             for i in range(r):
                 for j in range(r):
                     weight = pb.directions[i, e] * pb.directions[j, e]
+                    if weight == 0.0:
+                        continue
                     row, column = 2 * (mk * r + i), 2 * (ml * r + j)
                     J[row, column] += weight * rr
                     J[row, column + 1] += weight * ri
@@ -344,6 +346,8 @@ def add_rates(pb, e, first, step, count, W, q, J):
             for i in range(r):
                 for j in range(r):
                     weight = pb.directions[i, e] * pb.directions[j, e]
+                    if weight == 0.0:
+                        continue
                     row, column = 2 * (mk * r + i), 2 * (ml * r + j)
                     J[row, column] += weight * rr
                     J[row, column + 1] += weight * ri

@@ -10,17 +10,20 @@ from numpy.typing import ArrayLike
 
 from frahm import readable
 from frahm.arrays import Complexes, Floats, frozen
+from frahm.harmonic_balance.alike import are_exchanged, interchangeable
 from frahm.harmonic_balance.bifurcations import unstable_count
 from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import unknowns
+from frahm.harmonic_balance.continued import continued
 from frahm.harmonic_balance.floquet import monodromy
 from frahm.harmonic_balance.following import lies_in_step, point_at
 from frahm.harmonic_balance.found import Found
-from frahm.harmonic_balance.indices import missing
+from frahm.harmonic_balance.indices import add_up, missing
 from frahm.harmonic_balance.inventory import (
     NONE_FOUND,
     all_known,
+    continued_text,
     inventory_text,
     not_proven,
     unfinished,
@@ -61,6 +64,8 @@ class PeriodicResponse:
         max |x_out| and max |z| over a period [m].
     pipe_amplitude, relative_amplitude : float
         First-harmonic amplitudes [m].
+    element_amplitudes : ndarray, shape (E,)
+        First-harmonic amplitudes [m] of all elements: which absorber carries the motion.
     residual : float
         Force harmonics that nothing balances, relative to all forces [-].
     symmetric : bool
@@ -77,6 +82,7 @@ class PeriodicResponse:
     relative_peak: float
     pipe_amplitude: float
     relative_amplitude: float
+    element_amplitudes: Floats
     residual: float
     symmetric: bool
 
@@ -114,13 +120,19 @@ def periodic_responses_of(
     known = _of_one_harmonic(search, frequency)
     if known is not None:
         return known
+    continued_ones, complete = _continued(search, frequency)
+    if complete:
+        searched = continued_text() + exchanged_text(system, continued_ones)
+        return Found(continued_ones, searched, tuple(search.unsearched))
     branches = find_branches(search, at=frequency)
     found = responses_on(search, branches, frequency)
+    found += [response for response in continued_ones if not any(_same(response, other) for other in found)]
+    found.sort(key=lambda response: response.relative_amplitude)
     doubts = (
         *search.unsearched, *search.budget.sentences(), *not_proven(search, frequency), *unfinished(branches),
         *(_missing(search, found) if found else (NONE_FOUND,)), *(unstable_unproven(search) if every else ()),
     )  # fmt: skip
-    return Found(found, inventory_text(search), doubts)
+    return Found(found, inventory_text(search) + exchanged_text(system, found), doubts)
 
 
 def _of_one_harmonic(search: Search, frequency: float) -> Found[PeriodicResponse] | None:
@@ -133,7 +145,48 @@ def _of_one_harmonic(search: Search, frequency: float) -> Found[PeriodicResponse
         return None
     found = [_response(search, True, X, H, frequency) for X, H in (one for one in solved if one is not None)]
     found = sorted(found, key=lambda response: response.relative_amplitude)
-    return Found(found, "All solutions of the equations of one harmonic at this frequency.", tuple(search.unsearched))
+    searched = "All solutions of the equations of one harmonic at this frequency."
+    return Found(found, searched + exchanged_text(search.system, found), tuple(search.unsearched))
+
+
+def _continued(search: Search, frequency: float) -> tuple[list[PeriodicResponse], bool]:
+    """Responses continued from all solutions of one harmonic, and whether their indices say that none is missing."""
+    found: list[PeriodicResponse] = []
+    solutions = continued(search, frequency)
+    if solutions is None:
+        return found, False
+    maps = []  # over half a period, of the symmetric ones
+    for odd, X, H in [(odd, *one) for odd, part in zip((True, False), solutions, strict=True) for one in part]:
+        solution = _solved(search, odd, frequency, X, H)
+        if solution is None:
+            return found, False
+        values = _map_multipliers(search, odd, *solution, frequency)
+        _add_response(search, found, odd, *solution, frequency, values)
+        maps += [values] if odd else []
+    if not found or any(response.residual > _EXACT for response in found):
+        return found, False
+    largest = max(response.relative_peak for response in found)
+    both = (maps, [response.multipliers for response in found])
+    found.sort(key=lambda response: response.relative_amplitude)
+    return found, all(add_up(search.system, values, largest) for values in both)
+
+
+def exchanged_text(system: System, responses: Sequence[PeriodicResponse]) -> str:
+    """How many responses are left if those are counted once that an exchange of equal absorbers makes of each other.
+
+    Nothing where no absorbers are equal.
+    """
+    groups = [group for group in interchangeable(system) if len(group) > 1]
+    if not groups:
+        return ""
+    kept: list[PeriodicResponse] = []
+    for response in responses:
+        if not any(are_exchanged(groups, response.harmonics, other.harmonics) for other in kept):
+            kept.append(response)
+    return (
+        f" Absorbers are equal: {len(responses)} responses are listed, {len(kept)} if those that differ only in which"
+        " of the equal ones carries the motion (`element_amplitudes`) are counted once."
+    )
 
 
 def _missing(search: Search, found: Sequence[PeriodicResponse]) -> tuple[str, ...]:
@@ -149,14 +202,25 @@ def responses_on(search: Search, branches: Iterable[SolutionBranch], frequency: 
     found: list[PeriodicResponse] = []
     for branch in branches:
         for X, H in _crossings(search, branch, frequency):
-            response = _response(search, branch.odd, X, H, frequency)
-            if not any(_same(response, other) for other in found):
-                found.append(response)
-            if not branch.odd and search.problem.odd:
-                mirrored = _response(search, False, _mirrored(search, X, H), H, frequency)
-                if not any(_same(mirrored, other) for other in found):
-                    found.append(mirrored)
+            _add_response(search, found, branch.odd, X, H, frequency)
     return sorted(found, key=lambda response: response.relative_amplitude)
+
+
+def _add_response(
+    search: Search,
+    found: list[PeriodicResponse],
+    odd: bool,
+    X: Floats,
+    H: int,
+    frequency: float,
+    of_map: Complexes | None = None,
+) -> None:
+    """Add a response that is new, and its mirror image if it is not symmetric."""
+    solutions = [X] if odd or not search.problem.odd else [X, _mirrored(search, X, H)]
+    for solution in solutions:
+        response = _response(search, odd, solution, H, frequency, of_map)
+        if not any(_same(response, other) for other in found):
+            found.append(response)
 
 
 def _crossings(search: Search, branch: SolutionBranch, W: float) -> list[tuple[Floats, int]]:
@@ -195,19 +259,33 @@ def _mirrored(search: Search, X: Floats, H: int) -> Floats:
     return other
 
 
-def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> PeriodicResponse:
+def _map_multipliers(search: Search, odd: bool, X: Floats, H: int, W: float) -> Complexes:
+    """Multipliers of the map over half a period to the opposite state (odd harmonics), or over a period."""
+    n = search.system.size
+    Phi = np.empty((2 * n, 2 * n))
+    followed = monodromy(search.problem, variation_of(search.system), H, odd, W, _harmonics(search, odd, X, H), Phi)
+    if np.all(np.isfinite(Phi)):
+        return np.linalg.eigvals(-Phi if odd else Phi).astype(complex)
+    # a disturbance grows beyond all numbers, or the period is too long to follow: no multiplier is known
+    return np.full(2 * n, np.inf if followed else np.nan, complex)
+
+
+def _harmonics(search: Search, odd: bool, X: Floats, H: int) -> Complexes:
+    u = np.empty((H + 5, search.problem.M11.shape[0]), complex)
+    harmonics_of(search.problem, H, odd, X, u)
+    return u
+
+
+def _response(
+    search: Search, odd: bool, X: Floats, H: int, W: float, of_map: Complexes | None = None
+) -> PeriodicResponse:
+    """The response with the unknowns X; `of_map` are its `_map_multipliers` if they are known."""
     pb, n = search.problem, search.system.size
-    u = np.empty((H + 5, pb.M11.shape[0]), complex)
-    harmonics_of(pb, H, odd, X, u)
+    u = _harmonics(search, odd, X, H)
     ks = range(1, H + 1, 2) if odd else range(H + 1)
     rows = {k: np.array([output_harmonic(pb, k, W, u[k], row) for row in range(2 + n)]) for k in ks}
-    Phi = np.empty((2 * n, 2 * n))
-    followed = monodromy(pb, variation_of(search.system), H, odd, W, u, Phi)
-    if np.all(np.isfinite(Phi)):
-        values = np.linalg.eigvals(Phi).astype(complex)
-        multipliers = values**2 if odd else values
-    else:  # a disturbance grows beyond all numbers, or the period is too long to follow: no multiplier is known
-        multipliers = np.full(2 * n, np.inf if followed else np.nan, complex)
+    values = _map_multipliers(search, odd, X, H, W) if of_map is None else of_map
+    multipliers = values**2 if odd and np.all(np.isfinite(values)) else values
     multipliers = multipliers[np.argsort(-np.abs(multipliers))]
     peaks = []
     for row in range(2):
@@ -226,9 +304,14 @@ def _response(search: Search, odd: bool, X: Floats, H: int, W: float) -> Periodi
         relative_peak=peaks[1],
         pipe_amplitude=float(abs(rows[1][0])),
         relative_amplitude=float(abs(rows[1][1])),
+        element_amplitudes=_element_amplitudes(search.system, rows[1][2:]),
         residual=float(truncation),
         symmetric=odd,
     )
+
+
+def _element_amplitudes(system: System, X: Complexes) -> Floats:
+    return frozen([abs(element.direction @ X) for element in system.elements])
 
 
 def _same(a: PeriodicResponse, b: PeriodicResponse) -> bool:
@@ -252,6 +335,7 @@ def _linear(system: System, W: float) -> PeriodicResponse:
         relative_peak=relative,
         pipe_amplitude=pipe,
         relative_amplitude=relative,
+        element_amplitudes=_element_amplitudes(system, X),
         residual=0.0,
         symmetric=True,
     )

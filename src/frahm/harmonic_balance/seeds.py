@@ -20,7 +20,7 @@ from frahm.arrays import Complexes, Floats
 from frahm.harmonic_balance.condensation import CondensedSystem, stiffness_at, stiffness_over, unknowns
 from frahm.harmonic_balance.describing import AmplitudeTable, amplitude_table, outer_balances
 from frahm.harmonic_balance.newton import solve_at
-from frahm.harmonic_balance.shared_drive import shared_stiffnesses, solutions_at
+from frahm.harmonic_balance.shared_drive import Solutions, shared_stiffnesses, solutions_at
 from frahm.polynomials import REAL, cubic_roots
 
 _STARTS = 48
@@ -174,6 +174,7 @@ class Seeder:
     buckled: bool  # whether an odd system has other equilibria, wells or tops, about which it may respond
     shared: Floats | None = None  # cubic stiffnesses of several coordinates that one motion drives, see `shared_drive`
     doubtful: set[float] = field(default_factory=set)  # frequencies at which not all of their solutions were found
+    solved: dict[float, Solutions] = field(default_factory=dict)  # by frequency
 
     def at(self, W: float, scale: float, first_only: bool = False) -> list[Seed]:
         """All starts at Omega = W [rad/s]; `first_only` leaves out free third harmonics and searches."""
@@ -192,14 +193,20 @@ class Seeder:
         if first_only:
             S, F = stiffness_at(pb, 1, W)
             return [Seed(W, {1: _linear(S, F)})]
-        seeds = searched_seeds(pb, W, scale, pb.odd) if self.shared is None else self._shared_seeds(W, self.shared)
+        if self.shared is None:
+            seeds = searched_seeds(pb, W, scale, pb.odd)
+        else:
+            seeds = [Seed(W, {1: u}) for u in self.solutions(W).harmonics]
         return seeds + searched_seeds(pb, W, scale, False) if self.buckled else seeds
 
-    def _shared_seeds(self, W: float, k: Floats) -> list[Seed]:
-        found = solutions_at(self.problem, W, k)
-        if not found.complete:
-            self.doubtful.add(W)
-        return [Seed(W, {1: u}) for u in found.harmonics]
+    def solutions(self, W: float) -> Solutions:
+        """All first-harmonic solutions of several elements that one motion drives at Omega = W [rad/s]."""
+        assert self.shared is not None
+        if W not in self.solved:
+            self.solved[W] = solutions_at(self.problem, W, self.shared)
+            if not self.solved[W].complete:
+                self.doubtful.add(W)
+        return self.solved[W]
 
 
 def seeder_for(pb: CondensedSystem, window: Floats) -> Seeder:

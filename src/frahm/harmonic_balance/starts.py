@@ -13,7 +13,7 @@ from frahm.harmonic_balance.newton import solve_at
 from frahm.harmonic_balance.root_counts import cubic_turns, extreme_turns, polynomial_counts, table_counts
 from frahm.harmonic_balance.search import Search
 from frahm.harmonic_balance.seeds import Extreme, Seed, third_harmonics
-from frahm.harmonic_balance.shared_drive import Solutions, solutions_at
+from frahm.harmonic_balance.shared_drive import Solutions
 from frahm.polynomials import cubic_roots
 
 _WORST = 0.05  # truncation with stops or friction beyond which a solution of the harmonics is none of the equations
@@ -46,7 +46,7 @@ def starts_of(search: Search) -> Starts:
     spread, dense = (np.linspace(search.lo, search.hi, number) for number in (seeds, 3 * seeds))
     e, table = search.seeder.spring, search.seeder.table
     if search.seeder.shared is not None:
-        return _starts_of_several(search, search.seeder.shared, spread, math.ceil(_SHARED_GRID * bands))
+        return _starts_of_several(search, spread, math.ceil(_SHARED_GRID * bands))
     if e is None and table is None:
         return Starts(dense, np.empty(0), [])
     grid = np.linspace(search.lo, search.hi, points)
@@ -115,11 +115,10 @@ def _ranges(grid: Floats, counts: np.ndarray, window: tuple[float, float]) -> tu
     return inside[0], inside[1]
 
 
-def _starts_of_several(search: Search, k: Floats, spread: Floats, points: int) -> Starts:
+def _starts_of_several(search: Search, spread: Floats, points: int) -> Starts:
     """Frequencies spread over the window, and one of every range in which the number of solutions is the same."""
     grid = np.linspace(search.lo, search.hi, points)
-    found = [solutions_at(search.problem, float(W), k) for W in grid]
-    search.seeder.doubtful.update(float(W) for W, at in zip(grid, found, strict=True) if not at.complete)
+    found = [search.seeder.solutions(float(W)) for W in grid]
     counts = np.array([len(at.harmonics) for at in found])
     middles, short = _ranges(grid, counts, (search.lo, search.hi))
     extremes = [extreme for w in range(1, points - 1) for extreme in _extremes_at(grid, found, w)]
@@ -128,18 +127,16 @@ def _starts_of_several(search: Search, k: Floats, spread: Floats, points: int) -
 
 def _extremes_at(grid: Floats, found: list[Solutions], w: int) -> list[Extreme]:
     """Turns of the force at one frequency that are beyond those beside it."""
+    motions, sizes, signs = found[w].turns
+    beaten = np.zeros(sizes.size, bool)
+    for others, other_sizes, other_signs in (found[w - 1].turns, found[w + 1].turns):
+        apart = np.linalg.norm(np.abs(motions)[:, None] - np.abs(others)[None], axis=2)
+        near = (apart < _NEXT * np.linalg.norm(motions, axis=1)[:, None]) & (signs[:, None] == other_signs[None])
+        beaten |= np.any(near & ((signs * sizes)[:, None] > signs[:, None] * other_sizes[None]), axis=1)
     extremes = []
-    for u, size, sign in zip(*found[w].turns, strict=True):
-        beside = [
-            float(sign * other_size)
-            for at in (found[w - 1], found[w + 1])
-            for other, other_size, other_sign in zip(*at.turns, strict=True)
-            if other_sign == sign and np.linalg.norm(np.abs(other) - np.abs(u)) < _NEXT * np.linalg.norm(u)
-        ]
-        if all(sign * size <= value for value in beside):
-            largest = u[np.argmax(np.abs(u))]
-            harmonics = {1: u * abs(largest) / largest}
-            extremes.append(Extreme(float(grid[w]), harmonics, int(sign), True))
+    for u, sign in zip(motions[~beaten], signs[~beaten], strict=True):
+        largest = u[np.argmax(np.abs(u))]
+        extremes.append(Extreme(float(grid[w]), {1: u * abs(largest) / largest}, int(sign), True))
     return extremes
 
 

@@ -20,7 +20,7 @@ from frahm.harmonic_balance import (
     resonant_grid,
     search_over,
 )
-from frahm.harmonic_balance.inventory import NONE_FOUND, inventory_text, not_proven, unfinished
+from frahm.harmonic_balance.inventory import NONE_FOUND, exchanges_text, inventory_text, not_proven, unfinished
 from frahm.response.curve import ResponseCurve, SpecialPoint
 from frahm.systems import System, detuning_of
 
@@ -52,7 +52,7 @@ def curve_and_branches(
         return _linear_curve(system, lo, hi, settings, forcing), None, []
     search = search_over(system, lo, hi, harmonics, forcing)
     branches = find_branches(search)
-    settings["inventory"] = inventory_text(search)
+    settings["inventory"] = inventory_text(search) + exchanges_text(search)
     settings["truncation"] = max((float(np.max(branch.points.truncations)) for branch in branches), default=math.nan)
     return _assembled(system, branches, search, settings), search, branches
 

@@ -1,5 +1,7 @@
 """All responses of parallel elements, of several absorbers, and of equal ones."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -124,6 +126,33 @@ def test_equal_absorbers_have_the_responses_of_the_one_they_are_together():
         near = min(two, key=lambda other: abs(other.relative_peak - response.relative_peak))
         assert near.pipe_peak == pytest.approx(response.pipe_peak, rel=1e-7)
         assert near.relative_peak == pytest.approx(response.relative_peak, rel=1e-7)
+
+
+@pytest.mark.parametrize("detuning", [-0.1, 0.05])
+def test_motions_in_which_equal_absorbers_part_are_found_with_all_their_exchanges(detuning):
+    kappa, xi2, rho2 = 367.38, 0.0039, 0.0067
+    system = star([(kappa / 3, xi2, rho2)] * 3)
+    found = frahm.periodic_responses(system, detuning=detuning)
+    assert found.unverified == ()
+    strokes = np.array([response.element_amplitudes for response in found])
+    np.testing.assert_allclose(strokes[:, 0], [response.relative_amplitude for response in found])
+    alike = [r for r, z in zip(found, strokes, strict=True) if np.ptp(z) < 1e-6 * np.max(z)]
+    together = frahm.periodic_responses(star([(kappa, 3 * xi2, 3 * rho2)]), detuning=detuning)
+    np.testing.assert_allclose([r.pipe_peak for r in alike], [r.pipe_peak for r in together], rtol=1e-7)
+    for z in strokes:  # every exchange of the three strokes is there
+        rows = {tuple(np.round(z[list(order)], 9)) for order in itertools.permutations(range(3))}
+        assert rows <= {tuple(row) for row in np.round(strokes, 9)}
+    once = {tuple(sorted(np.round(z, 9))) for z in strokes}
+    assert len(alike) < len(once) < len(found) == len({tuple(row) for row in np.round(strokes, 9)})
+    assert f"{len(found)} responses are listed, {len(once)} if" in found.searched
+
+
+def test_a_curve_of_equal_absorbers_says_that_exchanges_are_listed():
+    system = star([(200, 0.004, 0.007)] * 2)
+    inventory = frahm.frequency_response(system, detuning=(0.3, 0.32)).settings["inventory"]
+    assert "which of them carries the motion are all listed" in inventory
+    unequal = star([(200, 0.004, 0.007), (210, 0.004, 0.007)])
+    assert "equal:" not in frahm.frequency_response(unequal, detuning=(0.3, 0.32)).settings["inventory"]
 
 
 def test_only_equal_absorbers_move_alike():
