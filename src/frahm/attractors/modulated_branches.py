@@ -129,7 +129,7 @@ def _branches(
         cycle = None if start is None else start.shooting.cycle(start.y)
         if start is None or cycle is None or any(_is_on(branch, cycle) for branch in branches):
             continue
-        points, ends = followed_branch(slow, scales, start, window, None)
+        points, ends = followed_branch(scales, start, window, None)
         if points:
             branches.append((points, ends))
         else:
@@ -157,7 +157,7 @@ def _scales(slow: SlowFlow, window: Range, periodic: SlowBranches) -> Scales | N
 def _born(slow: SlowFlow, scales: Scales, starts: Sequence[Start], window: Range, at: float) -> Branch | None:
     """The branch born at a Hopf point, from the largest of the small cycles that can be corrected."""
     for start in starts:
-        points, ends = followed_branch(slow, scales, start, window, at)
+        points, ends = followed_branch(scales, start, window, at)
         if points:
             return points, ends
     return None

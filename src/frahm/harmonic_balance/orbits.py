@@ -9,7 +9,7 @@ import numpy as np
 from frahm.compiled import kernel, separate_kernel
 from frahm.harmonic_balance.floquet import map_multipliers
 from frahm.harmonic_balance.kernels import fourier_tables, harmonics_of, output_harmonic, sample_count, unknowns
-from frahm.harmonic_balance.newton import correct, resize, tangent
+from frahm.harmonic_balance.newton import correct, tangent
 
 _LOCATED = 1e-6  # of the frequency: half-width up to which a point where branches cross counts as located
 
@@ -96,6 +96,15 @@ def describe(pb, va, odd, ys, Hs, columns, multipliers):
             columns[i, 1 + row] = abs(x[1])
             columns[i, 3 + row] = peak_of(x, H, odd)
         map_multipliers(pb, va, H, odd, W, u, multipliers[i])
+
+
+@kernel
+def multipliers_along(pb, va, odd, ys, Hs, multipliers):
+    """Multipliers (points, m) of the map alone."""
+    for i in range(Hs.size):
+        u = np.empty((Hs[i] + 5, pb.M11.shape[0]), np.complex128)
+        harmonics_of(pb, Hs[i], odd, ys[i], u)
+        map_multipliers(pb, va, Hs[i], odd, ys[i, unknowns(pb, Hs[i], odd)], u, multipliers[i])
 
 
 @separate_kernel
@@ -228,9 +237,3 @@ def same_harmonics(pb, odd, y, t, H, H_new, y_new, t_new):
     y_new[:] = 0.0
     t_new[:] = 0.0
     _copy(pb, odd, y, t, H, H_new, y_new, t_new)
-
-
-@kernel
-def shrink(pb, H, H_new, odd, y):
-    """Change the number of harmonics of a stored point in place."""
-    resize(pb, H, H_new, odd, y)
