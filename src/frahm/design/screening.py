@@ -22,7 +22,7 @@ from frahm.design.host import Conditions, Host
 from frahm.design.kernels import amplitude_tables, births, largest_responses, screened
 from frahm.design.objective import ClimateMean
 
-_BATCH, _GROUPS = 2000, 64  # designs a thread takes at once, of one absorber and of several
+_BATCH, _GROUPS = 2000, 6  # designs a thread takes at once, of one absorber and of several
 _POWERS = np.array([2, 2, 4, 2, 6])  # of the ratio of motions that m, k1, k3, c, k5 grow with
 
 

@@ -24,6 +24,7 @@ STROKE, GROWTH, BIRTH, CEILING, SPRINGS, PEAKS = range(6)  # columns of what is 
 _GRID = {2: (72, 72), 3: (24, 30, 26)}
 _SOBOL = 2**14  # designs of the first look at more parameters
 _SOBOL_OF_GROUPS = 2**11  # the same of several absorbers, whose closed form takes a hundred times as long
+_BESIDE = 0.04  # of the cube
 _ASKED = 2**8  # of these: how many are asked for their detached curves
 _CONVERGED, _CONVERGED_GROUPS = 1e-6, 1e-3  # spread of the values over their mean that ends a search
 _MEMBERS, _GENERATIONS, _SEED = 36, 80, 1
@@ -91,13 +92,14 @@ class Limits:
 
 @dataclass(eq=False)
 class Ledger:
-    """What a search has come to: designs judged, and where in the cube it is not to look again (d,).
+    """What a search has come to: designs judged, where in the cube it is not to look again (d,), and its last best.
 
     One for a search and all its parts, under whatever limits these are.
     """
 
     count: int = 0
     avoided: list[Floats] = field(default_factory=list)
+    last: Floats | None = None
 
 
 @dataclass(eq=False)
@@ -199,6 +201,8 @@ class TierOne:
 
         values = self._allowed(self.grid, self.predicted(self.grid_judged, limits, corrections))
         members = self._members(values)
+        if self.space.count > 1 and len(members) and self.ledger.last is not None:
+            members = self._beside(self.ledger.last, members)
         if not len(members):
             return None
         worst = 10.0 * float(np.max(values[np.isfinite(values)]))
@@ -213,7 +217,15 @@ class TierOne:
             objective, [(0.0, 1.0)] * self.space.size, init=members, maxiter=_GENERATIONS, vectorized=True,
             updating="deferred", polish=False, seed=_SEED, tol=tolerance, mutation=(0.4, 0.9), recombination=0.9,
         )  # fmt: skip
+        self.ledger.last = found.x
         return self.space.designs(found.x[None])[0], float(found.fun)
+
+    def _beside(self, last: Floats, members: Floats) -> Floats:
+        """Population of a search whose corrections have changed a little: half of it beside what was best before."""
+        count = len(members) // 2
+        near = last + np.random.default_rng(_SEED).normal(0.0, _BESIDE, (count, len(last)))
+        near[0] = last
+        return np.clip(np.vstack([near, members[: len(members) - count]]), 0.0, 1.0)
 
     def avoid(self, design: Floats) -> None:
         """Search no longer near a design (5 N,), because it was found worse than it looked."""
