@@ -12,7 +12,7 @@ from frahm import readable
 from frahm.analysis import FORCE_MARGIN, defaulted_fields, provenance
 from frahm.analysis.decision import together
 from frahm.case import Case, Design, field_table, field_values
-from frahm.design import FAR, DesignStudy, Objective, Rival, design_summary
+from frahm.design import FAR, DesignedAbsorber, DesignStudy, Objective, Rival, design_summary
 from frahm.files import write_text
 from frahm.loads import lock_in_band, resonant_shedding, vortex_shedding
 from frahm.plotting.decision import DEVICES, Marks
@@ -63,6 +63,8 @@ def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
         comparison=[
             *rows_of(compared, study.comparison), tuple(_ROPES.get(head, "-") for head in heads(compared)),
         ],
+        by_count_head=heads(_by_count(objective)),
+        by_count=rows_of(_by_count(objective), study.by_count) if len(study.settings.counts) > 1 else [],
         error_head=["Device", *(f"{100 * (r - 1):+.3g} %" if r != 1 else "0 %" for r in study.errors)],
         error_rows=error_rows(study),
         trade_off_head=heads(_trade_off(objective)),
@@ -129,7 +131,8 @@ def missed_below(study: DesignStudy) -> str:
 
 def least_stroke(study: DesignStudy) -> str:
     """Motion of the mass below which no absorber balances the force, at the pipe's frequency."""
-    ratio = study.best.design.rho2 if study.best.design else math.nan
+    design = study.best.design
+    ratio = sum(one.rho2 for one in design.absorbers) if design else math.nan
     case = study.case
     lift = resonant_shedding(case).lift * float(case.pipe.modal.lift_lengths[0]) / case.pipe.length
     return readable.length(lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
@@ -170,25 +173,42 @@ def _comparison(objective: Objective, searched: float) -> list[Column]:
 def _device(rival: Rival) -> str:
     design, name = rival.design, DEVICES[rival.name]
     if design is not None:
+        name += f", {design.count} absorbers" if design.count > 1 else ""
         name += f", fifth power {number(design.quintic)} 1/(m⁴ s²)" if design.quintic else ""
         name += f", at {number(design.position)} m" if design.position is not None else ""
     return name
 
 
 def _of_design(name: str) -> Callable[[Rival], str]:
-    return lambda rival: "-" if rival.design is None else number(getattr(rival.design, name), 4)
+    return lambda rival: "-" if rival.design is None else _each(rival.design, name)
 
 
 def _trade_off(objective: Objective) -> list[Column]:
     """Columns of the designs for several force margins."""
     return [
         Column("Force", lambda point: f"{point.force_margin:g}"),
-        Column("linear [1/s²]", lambda point: number(point.design.linear)),
-        Column("κ [1/(m² s²)]", lambda point: number(point.design.kappa, 5)),
-        Column("ξ₂ [1/s]", lambda point: number(point.design.xi2)),
+        Column("linear [1/s²]", lambda point: _each(point.design, "linear")),
+        Column("κ [1/(m² s²)]", lambda point: _each(point.design, "kappa", 5)),
+        Column("ξ₂ [1/s]", lambda point: _each(point.design, "xi2")),
         Column(_titled(objective), lambda point: _value(point.value, objective)),
         Column("Verified", lambda point: point.verified, yes_or_no),
     ]
+
+
+def _by_count(objective: Objective) -> list[Column]:
+    """Columns of the best designs of every family and number of absorbers."""
+    return [
+        Column("Device", lambda rival: DEVICES[rival.name]),
+        Column("Absorbers", lambda rival: str(rival.count)),
+        *(Column(head, _of_design(name)) for head, name in _PARAMETERS.items()),
+        Column(_titled(objective), lambda rival: _value(rival.value, objective)),
+        Column("Verified", lambda rival: rival.verified, yes_or_no),
+    ]
+
+
+def _each(design: DesignedAbsorber, name: str, digits: int = 4) -> str:
+    """A parameter of every absorber."""
+    return " · ".join(number(getattr(one, name), digits) for one in design.absorbers)
 
 
 def _value(value: float, objective: Objective) -> str:
