@@ -29,6 +29,7 @@ _BEYOND_NUMBERS = 1e300  # stands for a multiplier that no number holds
 _ROUNDS = 6  # of points put between points
 _GRAZING = 0.1  # of its bend: a logarithm whose summit comes as near to zero may have crossed it
 _STRAIGHT = 1e-9  # bend of a logarithm that is rounding
+_STEPS_TO_EDGE = (1, 4, 16)  # in which a point on an edge of the window is looked for from its neighbour
 _NEAR_CIRCLE = 0.9  # modulus from which on a multiplier may soon leave the unit circle
 
 
@@ -100,10 +101,20 @@ def _on_edge(search: Search, branch: SolutionBranch, i: int, edge: float) -> Poi
     a, b = (branch.points[k].with_harmonics(pb, odd, H) for k in (i, i + 1))
     n = unknowns(pb, H, odd)
     f = (edge - a.y[n]) / (b.y[n] - a.y[n])
-    y = (1 - f) * a.y + f * b.y
-    ok, _, _ = solve_at(pb, odd, edge, y, H, search.highest, math.inf, 12)
-    y[n] = edge
-    return Point(y if ok else a.y, (1 - f) * a.t + f * b.t, H)
+    t = (1 - f) * a.t + f * b.t
+    for steps in _STEPS_TO_EDGE:
+        y = a.y.copy()
+        for step in range(1, steps + 1):
+            W = a.y[n] + step / steps * (edge - a.y[n])
+            y += (b.y - a.y) * (edge - a.y[n]) / (b.y[n] - a.y[n]) / steps
+            ok, _, _ = solve_at(pb, odd, W, y, H, search.highest, math.inf, 12)
+            if not ok:
+                break
+        if ok:
+            y[n] = edge
+            return Point(y, t, H)
+    y = (1 - f) * a.y + f * b.y  # on the chord of two neighbours: off by the square of their distance
+    return Point(y, t, H)
 
 
 def _refine(search: Search, branch: SolutionBranch) -> None:
