@@ -9,7 +9,7 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.harmonic_balance.condensation import CondensedSystem, unknowns
-from frahm.harmonic_balance.orbits import between, describe, same_harmonics
+from frahm.harmonic_balance.orbits import between, describe, multipliers_along, same_harmonics
 from frahm.harmonic_balance.search import Search
 
 
@@ -106,6 +106,13 @@ def described(search: Search, odd: bool, points: Points) -> Points:
     multipliers = np.empty((len(points), 2 * search.variation.K.shape[0]), complex)
     describe(search.problem, search.variation, odd, points.ys, points.Hs, columns, multipliers)
     return replace(points, columns=columns, multipliers=multipliers)
+
+
+def with_multipliers(search: Search, points: Points) -> Points:
+    """Points of motions of odd harmonics with the multipliers of the half map alone."""
+    multipliers = np.empty((len(points), 2 * search.variation.K.shape[0]), complex)
+    multipliers_along(search.problem, search.variation, True, points.ys, points.Hs, multipliers)
+    return replace(points, multipliers=multipliers)
 
 
 def point_between(search: Search, odd: bool, a: Point, b: Point, fraction: float = 0.5) -> Point | None:

@@ -98,6 +98,15 @@ def describe(pb, va, odd, ys, Hs, columns, multipliers):
         map_multipliers(pb, va, H, odd, W, u, multipliers[i])
 
 
+@kernel
+def multipliers_along(pb, va, odd, ys, Hs, multipliers):
+    """Multipliers (points, m) of the map alone."""
+    for i in range(Hs.size):
+        u = np.empty((Hs[i] + 5, pb.M11.shape[0]), np.complex128)
+        harmonics_of(pb, Hs[i], odd, ys[i], u)
+        map_multipliers(pb, va, Hs[i], odd, ys[i, unknowns(pb, Hs[i], odd)], u, multipliers[i])
+
+
 @separate_kernel
 def between(pb, odd, ya, ta, yb, tb, H, fraction, x_scale, w_scale, y, t):
     """Point y and scaled unit tangent t where the hyperplane across the chord from a to b cuts the branch.

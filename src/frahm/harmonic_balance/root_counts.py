@@ -114,13 +114,24 @@ def extreme_turns(turns: Floats, last: int) -> Floats:
     found = []
     for sign in (1.0, -1.0):
         own = turns[(turns[:, 3] == sign) & (np.abs(turns[:, 2]) < 2 * _LOOK)]
-        level = sign * own[:, 2]
-        apart = own[:, None, :2] - own[None, :, :2]
-        beside = (np.abs(apart[:, :, 0]) == 1) & (np.abs(apart[:, :, 1]) < _NEXT)
-        least = np.all(~beside | (level[:, None] <= level[None, :]), axis=1)
+        least = _least_beside(own[:, 0], own[:, 1], sign * own[:, 2])
         inside = (own[:, 0] > 0) & (own[:, 0] < last)
         found.append(own[least & inside & (np.abs(own[:, 2]) < _LOOK)])
     return np.concatenate(found)
+
+
+def _least_beside(index: Floats, log_a: Floats, level: Floats) -> np.ndarray:
+    """Which turns have a level no higher than those near in amplitude at the frequencies before and after."""
+    order = np.argsort(index, kind="stable")
+    least = np.ones(index.size, dtype=bool)
+    for side in (-1, 1):
+        first, end = (np.searchsorted(index, index + side, where, sorter=order) for where in ("left", "right"))
+        for k in range(int(np.max(end - first, initial=0))):
+            mine = np.flatnonzero(first + k < end)
+            other = order[first[mine] + k]
+            near = np.abs(log_a[mine] - log_a[other]) < _NEXT
+            least[mine] &= ~near | (level[mine] <= level[other])
+    return least
 
 
 def _counts(

@@ -8,7 +8,16 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.harmonic_balance.bifurcations import bifurcations_in_step, steps_with_bifurcations, unlocated_in_step
-from frahm.harmonic_balance.branch import Bifurcation, Point, Points, SolutionBranch, described, located, points_of
+from frahm.harmonic_balance.branch import (
+    Bifurcation,
+    Point,
+    Points,
+    SolutionBranch,
+    described,
+    located,
+    points_of,
+    with_multipliers,
+)
 from frahm.harmonic_balance.condensation import unknowns
 from frahm.harmonic_balance.following import point_in_step
 from frahm.harmonic_balance.newton import solve_at
@@ -49,7 +58,7 @@ def _branch_points_outside(search: Search, branch: SolutionBranch, inside: np.nd
         rows = rows[(W[rows] >= search.outer[0]) & (W[rows] <= search.outer[1])]
         if len(rows) < 2:
             continue
-        part = SolutionBranch(True, described(search, True, branch.points.take(rows)), False, ())
+        part = SolutionBranch(True, with_multipliers(search, branch.points.take(rows)), False, ())
         for i in np.flatnonzero(steps_with_bifurcations(search, part)):
             if search.budget.bifurcations <= 0:
                 break
