@@ -6,7 +6,7 @@ from frahm.harmonic_balance.alike import moving_alike
 from frahm.harmonic_balance.births import MARGIN
 from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.describing import PER_DECADE
-from frahm.harmonic_balance.follow import CLOSED, LEFT
+from frahm.harmonic_balance.follow import CLOSED, LEFT, MIRRORED
 from frahm.harmonic_balance.search import Search
 
 _SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
@@ -101,5 +101,5 @@ def unfinished(branches: list[SolutionBranch]) -> list[str]:
         f"Branch {number} could not be followed to its end; it stops near"
         f" {branch.points.frequency[0]:.6g}, {branch.points.frequency[-1]:.6g} rad/s."
         for number, branch in enumerate(branches)
-        if any(ending not in (LEFT, CLOSED) for ending in branch.endings)
+        if any(ending not in (LEFT, CLOSED, MIRRORED) for ending in branch.endings)
     ]
