@@ -1,5 +1,7 @@
 """Responses of several absorbers at one frequency, continued from those of one harmonic, against other searches."""
 
+import itertools
+
 import numpy as np
 import pytest
 import scipy.integrate
@@ -9,6 +11,7 @@ from frahm.harmonic_balance import responses as module
 from frahm.harmonic_balance.branches import find_branches
 from frahm.harmonic_balance.condensation import condense, unknowns
 from frahm.harmonic_balance.continued import continued
+from frahm.harmonic_balance.follow import MIRRORED
 from frahm.harmonic_balance.over_force import follow_over_force
 from frahm.harmonic_balance.responses import periodic_responses_of, responses_on
 from frahm.harmonic_balance.search import search_over
@@ -154,3 +157,14 @@ def test_the_curve_over_the_force_leads_from_each_response_of_one_sink_to_the_ot
             met += list(out[:count])
         for other in unknown:
             assert min(np.max(np.abs(other - m)) for m in met) < 2e-3 * scale
+
+
+def test_an_asymmetric_branch_ends_where_its_mirror_image_begins():
+    search = search_over(star(THREE[:2]), OMEGA - 0.1, OMEGA - 0.02, None)
+    halves = [branch for branch in find_branches(search) if not branch.odd]
+    assert halves
+    assert any(MIRRORED in branch.endings for branch in halves)
+    for branch in halves:  # nowhere does it cross over to the other one of the pair
+        points, r = branch.points, search.problem.M11.shape[0]
+        even = [points.ys[i, : 8 * r].reshape(-1, 2 * r)[::2].ravel() for i in range(len(points.Hs))]
+        assert all(a @ b >= 0 for a, b in itertools.pairwise(even))
