@@ -34,7 +34,7 @@ def modes(work: Work) -> Section:
         return Section()
     checks = (_convergence(work),) if isinstance(case.pipe, Tube) else ()
     return Section(
-        results={"modes": {"governing": case.pipe.governing_mode, "modes": _rows(case, modal)}},
+        results={"modes": {"governing": case.pipe.governing_mode, "modes": _rows(modal)}},
         data={"modes": case.pipe.beam_modes.to_dataset() if isinstance(case.pipe, Tube) else _table(modal)},
         checks=tuple(check for check, _ in checks),
         unverified=(
@@ -45,7 +45,7 @@ def modes(work: Work) -> Section:
     )
 
 
-def _rows(case: Case, modal: ModalPipe) -> list[dict[str, Any]]:
+def _rows(modal: ModalPipe) -> list[dict[str, Any]]:
     try:
         stress = modal.stress()
     except ParameterError:  # a table of modes without stresses

@@ -22,6 +22,7 @@ from frahm.errors import Outcome
 from frahm.harmonic_balance import is_linear
 from frahm.systems import System
 from frahm.time_integration import TimeHistory, integrate, integrate_batch
+from frahm.time_integration.signals import sliding_amplitude
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -270,11 +271,7 @@ def _sliding(history: TimeHistory) -> Floats:
 
 
 def _first_harmonic(history: TimeHistory, values: Floats) -> Floats:
-    """First-harmonic amplitude over a period that slides along the history, a few values a period."""
-    carried = values * np.exp(-1j * history.frequency * history.time)
-    total = np.concatenate([[0.0], np.cumsum(carried)])
-    mean = (total[SAMPLES_PER_PERIOD:] - total[:-SAMPLES_PER_PERIOD]) / SAMPLES_PER_PERIOD
-    return np.asarray(2 * np.abs(mean[:: SAMPLES_PER_PERIOD // SLOW_SAMPLES]), dtype=float)
+    return sliding_amplitude(values, history.time, history.frequency, SAMPLES_PER_PERIOD, SLOW_SAMPLES)
 
 
 def _codes() -> str:

@@ -14,7 +14,6 @@ from frahm.attractors.cycle_starts import CLOSE, Start
 from frahm.attractors.slow_cycles import Scales, Shooting, SlowCycle
 from frahm.continuation import ContinuationSettings, CurvePoint, between_points, follow_curve
 from frahm.errors import Outcome
-from frahm.slow_flow import SlowFlow
 
 MOST_POINTS = 400
 _CHUNK = 16  # points between two settings of the nodes
@@ -70,19 +69,19 @@ class _Way:
 
 
 def followed_branch(
-    slow: SlowFlow, scales: Scales, start: Start, window: tuple[float, float], from_hopf: float | None
+    scales: Scales, start: Start, window: tuple[float, float], from_hopf: float | None
 ) -> tuple[list[CyclePoint], tuple[End, End]]:
     """Cycles in order along the branch through a start, and both ends.
 
     `from_hopf` is the detuning [rad/s] of the Hopf point at which the branch begins, None if it is followed both ways.
     """
-    ahead = _follow(slow, scales, start, window, start.direction)
+    ahead = _follow(scales, start, window, start.direction)
     if from_hopf is not None:
         born = End("hopf", Outcome.DONE, f"It is born at the Hopf point at detuning {from_hopf:.5g} rad/s.")
         return ahead.points, (born, _end(ahead))
     if _end(ahead).kind == "closed":
         return ahead.points, (_end(ahead), _end(ahead))
-    behind = _follow(slow, scales, start, window, -start.direction)
+    behind = _follow(scales, start, window, -start.direction)
     return behind.points[:0:-1] + ahead.points, (_end(behind), _end(ahead))
 
 
@@ -92,7 +91,7 @@ def _end(way: _Way) -> End:
     return way.end
 
 
-def _follow(slow: SlowFlow, scales: Scales, start: Start, window: tuple[float, float], direction: Floats) -> _Way:
+def _follow(scales: Scales, start: Start, window: tuple[float, float], direction: Floats) -> _Way:
     """Follow a branch one way, with the nodes set anew every few points."""
     way = _Way()
     shooting, y, step = start.shooting, start.y, _FIRST

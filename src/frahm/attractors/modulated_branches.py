@@ -113,7 +113,7 @@ def _branches(
         if any(_ends_at(slow, branch, point.frequency) for branch in branches):
             continue
         at = point.frequency - slow.omega
-        branch = _born(slow, scales, starts_at_hopf(slow, scales, point), window, at)
+        branch = _born(scales, starts_at_hopf(slow, scales, point), window, at)
         if branch is None:
             doubts.append(f"The branch of modulated responses born at detuning {at:.5g} rad/s could not be started.")
         else:
@@ -129,7 +129,7 @@ def _branches(
         cycle = None if start is None else start.shooting.cycle(start.y)
         if start is None or cycle is None or any(_is_on(branch, cycle) for branch in branches):
             continue
-        points, ends = followed_branch(slow, scales, start, window, None)
+        points, ends = followed_branch(scales, start, window, None)
         if points:
             branches.append((points, ends))
         else:
@@ -154,10 +154,10 @@ def _scales(slow: SlowFlow, window: Range, periodic: SlowBranches) -> Scales | N
     return Scales(float(pipe), float(relative), min(0.02 * slow.omega, 0.5 * (window[1] - window[0])))
 
 
-def _born(slow: SlowFlow, scales: Scales, starts: Sequence[Start], window: Range, at: float) -> Branch | None:
+def _born(scales: Scales, starts: Sequence[Start], window: Range, at: float) -> Branch | None:
     """The branch born at a Hopf point, from the largest of the small cycles that can be corrected."""
     for start in starts:
-        points, ends = followed_branch(slow, scales, start, window, at)
+        points, ends = followed_branch(scales, start, window, at)
         if points:
             return points, ends
     return None

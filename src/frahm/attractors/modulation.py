@@ -30,9 +30,6 @@ class Exponent(NamedTuple):
     chaotic: bool
 
 
-UNKNOWN = Exponent(float("nan"), (float("nan"), float("nan")), False)
-
-
 def lyapunov(strobe: Stroboscope, states: Floats) -> Exponent:
     """Largest Lyapunov exponent from the growth between neighbours of states (m, 2n) on the attractor.
 

@@ -40,6 +40,28 @@ _CLOSE = 8e-5  # frequencies nearer than this are one
 UNMOVED_TIER = "nothing excites the pipe: the lift is zero"
 
 
+@dataclass(frozen=True)
+class Sampling:
+    """How a range is searched, see `worst_case`; special points are looked at from `beside` of the frequency away."""
+
+    samples: int
+    min_basin: float
+    seed: int
+    region: Region | None = None
+    periods: int | None = None
+    workers: int | None = None
+    rms: bool = False
+    beside: float = BESIDE
+
+    def __post_init__(self) -> None:
+        whole = {"samples": (1, MOST_SAMPLES), "seed": (0, 2**31 - 1), "periods": (1, 1_000_000), "workers": (1, 1024)}
+        for name, (least, most) in whole.items():
+            value = getattr(self, name)
+            if value is not None or name in ("samples", "seed"):
+                object.__setattr__(self, name, check_count(name, value, at_least=least, at_most=most))
+        object.__setattr__(self, "min_basin", check_number("min_basin", self.min_basin, at_least=0.0, at_most=1.0))
+
+
 @dataclass(frozen=True, eq=False)
 class WorstCase:
     """The worst over a range of operation, and where it was looked for.
@@ -194,28 +216,14 @@ def worst_case(
     """
     system = as_system(case_or_system)
     within = _range(case_or_system, system, detuning, frequency, wind)
-    settings = _checked(system, samples, min_basin, seed, region, periods, workers) | {"rms": rms}
-    first = worst_over(system, within, **settings)
+    box = None if region is None else checked_region(system, region)
+    sampling = Sampling(samples, min_basin, seed, box, periods, workers, rms)
+    first = _worst(system, within, sampling)
     if isinstance(case_or_system, System) or not within.moves:
         return first
-    settings |= {"region": None}
-    beside = other_ranges(load_case(case_or_system))
-    others = [worst_over(build_system(case), part, **settings) for case, part in beside]
+    sampling = replace(sampling, region=None)
+    others = [_worst(build_system(case), part, sampling) for case, part in other_ranges(load_case(case_or_system))]
     return worst_of((first, *others))
-
-
-def _checked(
-    system: System, samples: Any, min_basin: Any, seed: Any, region: Any, periods: Any, workers: Any
-) -> dict[str, Any]:
-    """Settings of the search as `worst_over` takes them."""
-    return {
-        "samples": check_count("samples", samples, at_most=MOST_SAMPLES),
-        "min_basin": check_number("min_basin", min_basin, at_least=0.0, at_most=1.0),
-        "seed": check_count("seed", seed, at_least=0),
-        "region": None if region is None else checked_region(system, region),
-        "periods": None if periods is None else check_count("periods", periods, at_most=1_000_000),
-        "workers": None if workers is None else check_count("workers", workers, at_most=1024),
-    }
 
 
 def worst_of(parts: Sequence[WorstCase]) -> WorstCase:
@@ -238,34 +246,35 @@ def _range(case_or_system: Any, system: System, detuning: Any, frequency: Any, w
     return frequency_range(lo, hi, lo - float(detuning_of(system, lo)))
 
 
-def worst_over(
-    system: System, within: OperatingRange, *, samples: int, min_basin: float, seed: int,
-    region: Region | None = None, periods: int | None = None, workers: int | None = None, rms: bool = False,
-    beside: float = BESIDE,
-) -> WorstCase:  # fmt: skip
-    """`worst_case` of a system over a range; special points are looked at from `beside` of the frequency away."""
+def worst_over(system: System, within: OperatingRange, **asked: Any) -> WorstCase:
+    """`worst_case` of a system over a range; what is asked are fields of `Sampling`."""
+    return _worst(system, within, Sampling(**asked))
+
+
+def _worst(system: System, within: OperatingRange, sampling: Sampling) -> WorstCase:
     wide = within.widened()
     curve, responses_at = _curve(system, wide)
     at = driven_at(system, wide)
     surveys: dict[float, AttractorSet] = {}
-    sizes = (pipe_size, stroke_size, rms_size) if rms else (pipe_size, stroke_size)
+    sizes = (pipe_size, stroke_size, rms_size) if sampling.rms else (pipe_size, stroke_size)
+    min_basin = sampling.min_basin
     lo, hi, _ = searched_window(system, *within.frequency)  # the sentence stands among those of the curve
     if is_linear(system) or not np.any(system.forcing):
         return _concluded(system, within, wide, curve, linear_motions(system, curve, within), min_basin, (), ())
-    box = region or _region_of(system, curve, lo, hi)
+    box = sampling.region or _region_of(system, curve, lo, hi)
 
     def survey(W: float, others: Sequence[Floats] = ()) -> AttractorSet:
-        responses, followed = responses_at(W), periods or settling_periods(system, W)
-        return attractors_from(strobe(W), responses, box, samples, seed, followed, others=others)
+        responses, followed = responses_at(W), sampling.periods or settling_periods(system, W)
+        return attractors_from(strobe(W), responses, box, sampling.samples, sampling.seed, followed, others=others)
 
     def strobe(W: float) -> Stroboscope:
-        return stroboscope(at(W), W, workers)
+        return stroboscope(at(W), W, sampling.workers)
 
     doubts: list[str] = []
     beyond: list[Place] = []
     bracketed = False
     try:
-        for W in _first_frequencies(curve, lo, hi, beside):
+        for W in _first_frequencies(curve, lo, hi, sampling.beside):
             surveys[W] = survey(W)
         bracketed = bracket(surveys, survey, strobe, min_basin, sizes)
         for W in frequencies_beyond(curve, lo, hi):

@@ -8,8 +8,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from frahm.case.quantities import Choice, Count, Quantity, QuantityList, QuantityOrNothing, Range
+from frahm.case.quantities import Choice, Count, Quantity, QuantityList, QuantityOrNothing, Range, refusal
 from frahm.case.section import CaseSection
+from frahm.errors import ParameterError, nearest
 
 FAMILIES = ("sink", "tuned", "mixed")
 OBJECTIVES = ("peak", "rms", "expected", "damage")
@@ -35,6 +36,68 @@ class NumberOrRange(Range):
         return {"anyOf": [Quantity.json_schema(self), *super().json_schema()["anyOf"]]}
 
 
+@dataclass(frozen=True)
+class CountOrRange(Count):
+    """A whole number, or a range of them."""
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return f"{super().allowed}; or two of them (lo, hi) with lo <= hi"
+
+    def read(self, value: Any) -> Any:
+        """The number, or both ends of the range."""
+        if isinstance(value, list | tuple):
+            if len(value) != 2:
+                raise refusal(self.allowed)
+            lo, hi = (self._one(item) for item in value)
+            if lo > hi:
+                raise refusal(self.allowed)
+            return lo if lo == hi else (lo, hi)
+        return self._one(value)
+
+    def _one(self, value: Any) -> int:
+        try:
+            return int(super().read(value))
+        except ParameterError:
+            raise refusal(self.allowed) from None
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema."""
+        one = super().json_schema()
+        return {"anyOf": [one, {"type": "array", "minItems": 2, "maxItems": 2, "items": one}]}
+
+
+@dataclass(frozen=True)
+class Shares(QuantityList):
+    """Shares of a whole, or one of a few words."""
+
+    words: tuple[str, ...] = ()
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return "one of " + ", ".join(self.words) + f"; or {super().allowed}, that add up to 1"
+
+    def read(self, value: Any) -> Any:
+        """The word, or the shares."""
+        if isinstance(value, str):
+            if value not in self.words:
+                near = nearest(value, self.words)
+                raise refusal(self.allowed, hint=f"Did you mean {near!r}?" if near else None)
+            return value
+        found = super().read(value)
+        if abs(sum(found) - 1) > _ADDED_UP:
+            raise refusal(self.allowed, hint=f"They add up to {sum(found):.6g}.")
+        return tuple(share / sum(found) for share in found)
+
+    def json_schema(self) -> dict[str, Any]:
+        """JSON schema."""
+        return {"anyOf": [{"enum": list(self.words)}, super().json_schema()]}
+
+
+_ADDED_UP = 1e-6  # shares are written with a few digits
+MOST_ABSORBERS = 6
 _Pair = tuple[float, float]
 _SHARE = Quantity("", at_least=0, at_most=0.5)
 
@@ -84,6 +147,25 @@ class Design(CaseSection):
         default=None,
         title="Mass ratio",
         description="Mass of the absorber over that of the pipe, or a range of it; left out: the case's, or 0.02.",
+    )
+    count: Annotated[int | tuple[int, int], CountOrRange(at_least=1, at_most=MOST_ABSORBERS)] = Field(
+        default=1,
+        title="Number of absorbers",
+        description="Designed together; or the least and the most, of which the best number is chosen. They take the"
+        " place of as many absorbers of the case.",
+    )
+    mass_shares: Annotated[
+        Literal["equal", "free"] | tuple[float, ...],
+        Shares("", above=0, below=1, shortest=2, longest=MOST_ABSORBERS, words=("equal", "free")),
+    ] = Field(
+        default="equal",
+        title="Masses of several absorbers",
+        description="equal; free, their sum being the mass ratio; or the share of each.",
+    )
+    devices: Annotated[Literal["any", "equal"], Choice(("any", "equal"))] = Field(
+        default="any",
+        title="Devices of several absorbers",
+        description="any: each with its own spring and damper; equal: one drawing for all.",
     )
     linear: Annotated[_Pair | None, Range("1/s^2", "k1/m1", at_least=0)] = Field(
         default=None, title="Range of the linear stiffness", description="Per mass; left out: wide."
@@ -170,6 +252,42 @@ class Design(CaseSection):
         if isinstance(data, dict) and isinstance(data.get("scatter"), int | float | str):
             return data | {"scatter": {"pipe_frequency": data["scatter"]}}
         return data
+
+    @model_validator(mode="after")
+    def _shares_fit(self) -> Design:
+        shares = self.mass_shares
+        if isinstance(shares, tuple):
+            if self.count != len(shares):
+                raise refusal(
+                    f"a number of shares that is the number of absorbers, {self.count}", path="design.mass_shares",
+                    value=shares,
+                )  # fmt: skip
+            if self.equal and max(shares) - min(shares) > _ADDED_UP:
+                raise refusal(
+                    "equal shares where the absorbers are one device", path="design.mass_shares", value=shares
+                )
+        if self.equal and shares == "free":
+            raise refusal("equal where the absorbers are one device", path="design.mass_shares", value=shares)
+        return self
+
+    @property
+    def equal(self) -> bool:
+        """Whether all absorbers designed together are one device."""
+        return self.devices == "equal"
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Numbers of absorbers to be tried, ascending."""
+        lo, hi = self.count if isinstance(self.count, tuple) else (self.count, self.count)
+        return tuple(range(lo, hi + 1))
+
+    def shares(self, count: int) -> tuple[float, ...] | None:
+        """Share of the mass that each of so many absorbers has; None where they are free."""
+        if count == 1:
+            return (1.0,)
+        if isinstance(self.mass_shares, tuple):
+            return self.mass_shares
+        return (1.0 / count,) * count if self.mass_shares == "equal" else None
 
     @property
     def mass_range(self) -> tuple[float, float] | None:

@@ -8,12 +8,12 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from frahm.case.quantities import Door, Label, refusal
+from frahm.case.quantities import FieldType, Label, refusal
 from frahm.case.section import CaseSection
 
 
 @dataclass(frozen=True)
-class Date(Door):
+class Date(FieldType):
     """A day of the calendar as text, 2026-03-31; empty for none."""
 
     @property

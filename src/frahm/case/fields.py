@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from frahm.case.quantities import Door
+from frahm.case.quantities import FieldType
 
 _LISTED = 9  # sections in a list that are still named one by one
 
@@ -146,7 +146,7 @@ def _sections(annotation: Any) -> typing.Iterator[tuple[str, type[BaseModel]]]:
 
 
 def _facts(path: str, info: FieldInfo) -> FieldFacts:
-    door = _door(info)
+    door = _field_type(info)
     return FieldFacts(
         path=path,
         title=info.title or "",
@@ -159,9 +159,9 @@ def _facts(path: str, info: FieldInfo) -> FieldFacts:
     )
 
 
-def _door(info: FieldInfo) -> Door | None:
+def _field_type(info: FieldInfo) -> FieldType | None:
     """How a value comes in; a pair of numbers comes in number by number."""
-    return next((entry for entry in [*info.metadata, *_inside(info.annotation)] if isinstance(entry, Door)), None)
+    return next((entry for entry in [*info.metadata, *_inside(info.annotation)] if isinstance(entry, FieldType)), None)
 
 
 def _inside(annotation: Any) -> typing.Iterator[Any]:

@@ -9,11 +9,9 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from frahm.case.case import Case
-from frahm.case.documents import LARGEST, READERS, check_mapping, document_data, document_text, place
-from frahm.case.problems import parameter_error
+from frahm.case.documents import LARGEST, READERS, document_data, document_text
+from frahm.case.problems import model_from_data
 from frahm.case.table_files import files_beside
 from frahm.case.yaml_text import read_yaml, yaml_text
 from frahm.errors import ParameterError, check_choice
@@ -129,10 +127,4 @@ def _from_text(text: str, source: str | os.PathLike[str]) -> Case:
 
 
 def _from_data(data: Any, source: str | None = None, lines: Mapping[str, int] | None = None) -> Case:
-    check_mapping(data, "case", _sections(), source)
-    try:
-        return Case(**data)
-    except ParameterError as error:
-        if source is None or not isinstance(error.__cause__, ValidationError):
-            raise error from None
-        raise parameter_error(error.__cause__, Case, functools.partial(place, source, lines or {})) from None
+    return model_from_data(Case, data, "case", _sections(), source, lines)

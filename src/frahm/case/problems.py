@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from frahm.case.documents import check_mapping, place
 from frahm.case.fields import FieldFacts, children, field_table, kinds
 from frahm.errors import ParameterError, nearest
 
 _SHOWN = 5
 _COMPARED = 100  # unknown names that are compared with those of the fields
+Model = TypeVar("Model", bound=BaseModel)
 Where = Callable[[str], str | None]
 
 
 class _Nothing:
     def __repr__(self) -> str:
         return "nothing"
+
+
+def model_from_data(
+    model: type[Model], data: Any, what: str, sections: str, source: str | None, lines: Mapping[str, int] | None
+) -> Model:
+    """A case or a study of plain data; what is wrong is said with the line of the `source` where there is one."""
+    check_mapping(data, what, sections, source)
+    try:
+        return model(**data)
+    except ParameterError as error:
+        if source is None or not isinstance(error.__cause__, ValidationError):
+            raise error from None
+        raise parameter_error(error.__cause__, model, functools.partial(place, source, lines or {})) from None
 
 
 def parameter_error(error: ValidationError, model: type[BaseModel], where: Where | None = None) -> ParameterError:

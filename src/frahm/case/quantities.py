@@ -31,7 +31,7 @@ def refusal(
 
 
 @dataclass(frozen=True)
-class Door:
+class FieldType:
     """How a field comes in; its subclasses say what is let in."""
 
     @property
@@ -60,7 +60,7 @@ class Door:
 
 
 @dataclass(frozen=True)
-class Quantity(Door):
+class Quantity(FieldType):
     """A physical quantity: a finite number in the SI unit, or text with a unit.
 
     Parameters
@@ -193,7 +193,7 @@ def _vanishes(value: Any) -> bool:
 
 
 @dataclass(frozen=True)
-class Count(Door):
+class Count(FieldType):
     """A whole number, or one of a few words."""
 
     at_least: int = 1
@@ -222,7 +222,7 @@ class Count(Door):
 
 
 @dataclass(frozen=True)
-class Label(Door):
+class Label(FieldType):
     """One line of text."""
 
     shortest: int = 0
@@ -251,7 +251,7 @@ class Label(Door):
 
 
 @dataclass(frozen=True)
-class Choice(Door):
+class Choice(FieldType):
     """One of a few words."""
 
     words: tuple[str, ...]
@@ -274,7 +274,7 @@ class Choice(Door):
 
 
 @dataclass(frozen=True)
-class Coefficients(Door):
+class Coefficients(FieldType):
     """Coefficients of a spring polynomial: c_1 [N/m], c_2 [N/m^2], ... ."""
 
     @property

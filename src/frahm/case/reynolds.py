@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from frahm.case.quantities import Door, Quantity, refusal
+from frahm.case.quantities import FieldType, Quantity, refusal
 from frahm.errors import ParameterError, check_number, nearest
 
 Coefficient = float | tuple[tuple[float, float], ...] | str
@@ -52,7 +52,7 @@ LIFT_CURVES = {
 
 
 @dataclass(frozen=True)
-class FlowCoefficient(Door):
+class FlowCoefficient(FieldType):
     """A number, pairs of Reynolds number and number, or the name of a published curve.
 
     Parameters

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from frahm.case.quantities import Choice, Door, Quantity, Range, refusal
+from frahm.case.quantities import Choice, FieldType, Quantity, Range, refusal
 from frahm.case.reynolds import LIFT, LIFT_CURVES, STROUHAL, STROUHAL_CURVES, Coefficient, reynolds_range
 from frahm.case.section import CaseSection
 from frahm.case.table_files import Column, table_rows
@@ -33,7 +33,7 @@ class Turbulence(CaseSection):
 
 
 @dataclass(frozen=True)
-class Record(Door):
+class Record(FieldType):
     """Pairs of time and wind speed, or the CSV file they are read from when the case is."""
 
     @property

@@ -11,6 +11,7 @@ from frahm.cli.ahead import compiled_ahead
 from frahm.cli.cases import CaseArgument
 from frahm.cli.guarded import ExitCode, held_interrupts
 from frahm.cli.notes import say_notes
+from frahm.errors import ParameterError
 
 if TYPE_CHECKING:
     from frahm.design import DesignStudy
@@ -45,6 +46,15 @@ def design(
     linear: Annotated[Range | None, typer.Option(help="Range of the linear stiffness per mass, 1/s2.")] = None,
     quintic: Annotated[Range | None, typer.Option(help="Range of the stiffness of the fifth power, 1/(m4 s2).")] = None,
     xi2: Annotated[Range | None, typer.Option(help="Range of the damping per mass, 1/s.")] = None,
+    count: Annotated[
+        str | None, typer.Option(help="Absorbers designed together: a number, or a range such as 1-3; 1.")
+    ] = None,
+    mass_shares: Annotated[
+        str | None, typer.Option(help="Masses of several absorbers: equal (default), free, or shares such as 0.6,0.4.")
+    ] = None,
+    devices: Annotated[
+        str | None, typer.Option(help="Several absorbers: any (default), or equal, one drawing for all.")
+    ] = None,
     masses: Annotated[Range | None, typer.Option(help="Range of the mass ratio, instead of one.")] = None,
     position: Annotated[Range | None, typer.Option(help="Range of the place on an elastic pipe, in m.")] = None,
     wind: Annotated[Range | None, typer.Option(help="Winds in which the worst is looked for, in m/s.")] = None,
@@ -59,7 +69,6 @@ def design(
     from frahm.case import load_case
     from frahm.cli.folder import claim_folder, default_folder
     from frahm.cli.progress import shown_progress
-    from frahm.errors import ParameterError
 
     loaded = load_case(case)
     own = default_folder(loaded)
@@ -70,6 +79,8 @@ def design(
         "objective": objective, "family": family, "scatter": scatter, "quantile": quantile,
         "force_margin": force_margin, "stroke": stroke, "spring_length": spring_length,
         "spring_stress": spring_stress, "kappa": kappa, "linear": linear, "quintic": quintic, "xi2": xi2,
+        "count": None if count is None else _counts(count), "devices": devices,
+        "mass_shares": None if mass_shares is None else _shares(mass_shares),
         "position": position, "wind": wind, "samples": samples, "seed": seed,
     }  # fmt: skip
     asked = {name: value for name, value in given.items() if value is not None}
@@ -89,6 +100,26 @@ def design(
         save_design(study, folder)
         write_design_report(study, folder)
     _conclude(study, folder)
+
+
+def _counts(text: str) -> int | tuple[int, int]:
+    """A number, or two of them with a hyphen between."""
+    parts = text.replace(" ", "").split("-")
+    if len(parts) in (1, 2) and all(part.isdecimal() for part in parts):
+        numbers = tuple(int(part) for part in parts)
+        return numbers[0] if len(numbers) == 1 else (numbers[0], numbers[1])
+    raise ParameterError("--count", text, "a whole number, or a range of them such as 1-3")
+
+
+def _shares(text: str) -> str | tuple[float, ...]:
+    """A word, or numbers with commas between."""
+    if "," not in text:
+        return text
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        allowed = "equal, free, or shares with commas between, such as 0.6,0.4"
+        raise ParameterError("--mass-shares", text, allowed) from None
 
 
 def _conclude(study: DesignStudy, folder: Path) -> None:

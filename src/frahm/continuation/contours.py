@@ -49,14 +49,20 @@ def _located(function: Callable[[Floats, Floats], Floats], line: Floats, x: Floa
     def along(value: Floats) -> Floats:
         return function(np.where(on_x_line, px, value), np.where(on_x_line, value, py))
 
-    f_lo, f_hi = along(lo), along(hi)
-    bracketed = f_lo * f_hi <= 0
+    bracketed, zero = bisected(along, lo, hi)
+    moving = np.where(bracketed, zero, moving)
+    return np.column_stack([np.where(on_x_line, px, moving), np.where(on_x_line, moving, py)])
+
+
+def bisected(function: Callable[[Floats], Floats], lo: Floats, hi: Floats) -> tuple[np.ndarray, Floats]:
+    """Where the function of every element changes its sign between two values, and whether it does."""
+    f_lo = function(lo)
+    bracketed = f_lo * function(hi) <= 0
     for _ in range(_HALVINGS):
         mid = 0.5 * (lo + hi)
-        left = np.signbit(along(mid)) == np.signbit(f_lo)
+        left = np.signbit(function(mid)) == np.signbit(f_lo)
         lo, hi = np.where(left, mid, lo), np.where(left, hi, mid)
-    moving = np.where(bracketed, 0.5 * (lo + hi), moving)
-    return np.column_stack([np.where(on_x_line, px, moving), np.where(on_x_line, moving, py)])
+    return bracketed, np.asarray(0.5 * (lo + hi))
 
 
 def _floor(lines: Floats, value: Floats) -> np.ndarray:

@@ -31,7 +31,7 @@ def own_absorber(work: DesignWork) -> None:
     checked = work.verify(work.case)
     work.nominal["case"] = checked.nominal
     free, _ = exact_birth(conditions_of(problem.modes(work.case), problem.disturbances), 1.0, most)
-    work.found.rivals["case"] = rival_of("case", absorber_of(work.case), checked, free)
+    work.found.rivals["case"] = rival_of("case", absorber_of(work.case), checked, free, len(work.case.absorbers))
 
 
 def whole_comparison(work: DesignWork) -> None:

@@ -10,7 +10,7 @@ from frahm import __version__
 from frahm.assessment import accepted, device_row, utilisations
 from frahm.attractors import joined
 from frahm.case import Case
-from frahm.design.absorber import DesignedAbsorber, with_design
+from frahm.design.absorber import DesignedAbsorber
 from frahm.design.study import NAMES, DesignStudy, Rival, first_of, headline
 from frahm.design.verdict import verdict
 from frahm.design.work import DesignWork
@@ -34,6 +34,7 @@ def concluded(work: DesignWork, interrupted: bool) -> DesignStudy:
         decision=_decision(work, rivals),
         lasting={rival.name: found.lasting[rival.name] for rival in rivals if rival.name in found.lasting},
         comparison=rivals,
+        by_count=tuple(found.by_count),
         errors=work.settings.errors,
         error_table=found.table,
         error_verified={name: tuple(not cell for cell in row) for name, row in found.table_doubts.items()},
@@ -98,6 +99,6 @@ def _best_case(work: DesignWork, design: DesignedAbsorber) -> Case:
     asked: dict[str, Any] = {"samples": work.settings.samples, "seed": work.settings.seed}
     if work.settings.wind is not None:
         asked |= {"wind": work.settings.wind, "detuning": None}
-    case = with_design(work.case, design)
+    case = work.problem.case_with(design)
     same = all(getattr(case.analysis, key) == value for key, value in asked.items())
     return case if same else case.with_analysis(**asked)

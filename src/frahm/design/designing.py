@@ -105,7 +105,7 @@ def design_absorber(
 
 
 def _run(work: DesignWork) -> None:
-    work.total = len(FAMILIES) + 5 + 5
+    work.total = len(FAMILIES) * len(work.settings.counts) + 5 + 5
     for step in STEPS:
         step(work)
 

@@ -28,7 +28,10 @@ def step_weights(case: Case, mass_ratio: float | tuple[float, float] | None = No
     settings = settings_for(case, mass_ratio, changes=changes)
     count = len(Problem.of(case, settings).disturbances)
     nonlinear = {"sink": True, "tuned": False, "mixed": settings.family == "mixed"}
-    weights = [float(count) if nonlinear[family] else _CLOSED_FORM for family in in_order(settings.family)]
+    weights = [
+        float(count * number) if nonlinear[family] else _CLOSED_FORM * number
+        for family in in_order(settings.family) for number in settings.counts
+    ]  # fmt: skip
     weights.append(_CLOSED_FORM)
     own = bool(case.absorbers) and case.absorbers[0].law.kind != "linear"
     if case.absorbers:

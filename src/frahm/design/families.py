@@ -9,3 +9,8 @@ MIXED = "mixed"
 def in_order(asked: str) -> tuple[str, ...]:
     """Families in the order of their search; the mixture is held against its corners, so they come first."""
     return ("tuned", "sink", MIXED) if asked == "tuned" else ("sink", "tuned", MIXED)
+
+
+def devices(family: str, count: int) -> str:
+    """So many devices of a family, in words."""
+    return DEVICES[family] if count == 1 else f"{count} x {DEVICES[family]}"

@@ -6,11 +6,11 @@ import math
 from dataclasses import replace
 
 from frahm.case import FAMILIES
-from frahm.design.absorber import DesignedAbsorber, with_design
-from frahm.design.families import DEVICES, MIXED
+from frahm.design.absorber import DesignedAbsorber
+from frahm.design.families import DEVICES, MIXED, devices
 from frahm.design.finalists import Finalist, finalists
 from frahm.design.search import Limits
-from frahm.design.study import Rival
+from frahm.design.study import ALIKE, Rival
 from frahm.design.verification import Verification
 from frahm.design.work import DesignWork, rival_of
 from frahm.errors import ParameterError
@@ -24,22 +24,42 @@ _MARGIN_SAMPLES = 40  # most initial states at every frequency with the margin o
 
 
 def best_of_family(work: DesignWork, family: str) -> Rival | None:
-    """Best verified design of a family: finalists in the order of what is expected of them."""
-    work.step(f"search: {DEVICES[family]}")
-    best, mode, tried = _cornered(work, family), work.mode_of_worst(work.bare), set[int | None]()
-    # where the pipe then moves most in another mode, a device that suits that one may do better
-    while mode not in tried:
-        tried.add(mode)
-        best = _searched(work, family, best, mode)
-        mode = None if best is None or best.design is None else work.worst_mode.get(best.design)
+    """Best verified design of a family: of the numbers of absorbers asked for, the one that does best.
+
+    Where two do as well, the smaller one.
+    """
+    best: Rival | None = None
+    for count in work.settings.counts:
+        found = _best_of_count(work, family, count)
+        if found is None:
+            continue
+        work.found.by_count.append(found)
+        better = best is None or (found.verified, -found.value) > (best.verified, -ALIKE * best.value)
+        best = found if better else best
     return best
 
 
-def _searched(work: DesignWork, family: str, best: Rival | None, sized_for: int | None = None) -> Rival | None:
+def _best_of_count(work: DesignWork, family: str, count: int) -> Rival | None:
+    """Best verified design of so many absorbers: finalists in the order of what is expected of them."""
+    work.step(f"search: {devices(family, count)}")
+    best, mode, tried = _cornered(work, family, count), work.mode_of_worst(work.bare), set[int | None]()
+    # where the pipe then moves most in another mode, a device that suits that one may do better
+    while mode not in tried:
+        tried.add(mode)
+        best = _searched(work, family, best, count, mode)
+        mode = None if best is None or best.design is None else work.worst_mode.get(best.design)
+    if best is not None and best.design is not None and count == 1:
+        work.problem.singles.setdefault(family, []).append(best.design)
+    return best
+
+
+def _searched(
+    work: DesignWork, family: str, best: Rival | None, count: int, sized_for: int | None = None
+) -> Rival | None:
     """Best verified design of a family among those sized for a mode, and what was best before."""
     corner = best
     for attempt in range(_ATTEMPTS):
-        waiting, discarded = family_finalists(work, family, work.limits, attempt > 0, sized_for)
+        waiting, discarded = family_finalists(work, family, work.limits, count, attempt > 0, sized_for)
         work.found.discarded += discarded
         best, failed = _tried(work, family, _apart(waiting)[:_MOST_FINALISTS], best, sized_for)
         if not failed and (attempt > 0 or best is not corner):
@@ -58,7 +78,7 @@ def _tried(
     for finalist in waiting:
         if best is not None and best.verified and finalist.predicted >= best.value:
             continue
-        checked = work.verify(with_design(work.case, finalist.design))
+        checked = work.verify(work.problem.case_with(finalist.design))
         rival = rival_of(DEVICES[family], finalist.design, checked, finalist.force_margin)
         work.nominal[finalist.design] = checked.nominal
         work.worst_mode[finalist.design] = work.mode_of_worst(checked)
@@ -99,9 +119,11 @@ def _with_margin(work: DesignWork, rival: Rival) -> Verification | None:
     return work.worst(work.problem.modes_of(rival.design), force=work.settings.force_margin, samples=samples)
 
 
-def _cornered(work: DesignWork, family: str) -> Rival | None:
+def _cornered(work: DesignWork, family: str, count: int) -> Rival | None:
     """For the mixture, the better of its corners: the optimum over the family is never worse than either."""
-    corners = [work.found.rivals[n] for n in (DEVICES["sink"], DEVICES["tuned"]) if n in work.found.rivals]
+    corners = [
+        one for one in work.found.by_count if one.design and one.design.count == count and one.name != DEVICES[MIXED]
+    ]
     if work.settings.family == MIXED:
         corners = [rival for rival in corners if rival.design and work.problem.admits(rival.design)]
     if family != MIXED or not corners:
@@ -111,11 +133,11 @@ def _cornered(work: DesignWork, family: str) -> Rival | None:
 
 
 def family_finalists(
-    work: DesignWork, family: str, limits: Limits, wary: bool = False, sized_for: int | None = None
+    work: DesignWork, family: str, limits: Limits, count: int, wary: bool = False, sized_for: int | None = None
 ) -> tuple[list[Finalist], list[str]]:
     """Finalists of a family under limits, and why others were discarded."""
     problem = work.problem
-    tier = problem.tier(family, limits.force_margin, sized_for)
+    tier = problem.tier(family, limits.force_margin, sized_for, count)
     kept, discarded = finalists(tier, problem.modes_of, problem.disturbances, limits, wary)
     return kept, [f"{DEVICES[family]}: {reason}" for reason in discarded]
 
@@ -124,13 +146,16 @@ def _apart(waiting: list[Finalist]) -> list[Finalist]:
     """Finalists in their order, without those that hardly differ from an earlier one."""
     chosen: list[Finalist] = []
     for finalist in waiting:
-        here = finalist.design.parameters
-        known = (other.design.parameters for other in chosen)
-        if not any(
-            all(math.isclose(here[key], there.get(key, 0.0), rel_tol=_ALIKE) for key in here) for there in known
-        ):
+        if not any(_alike(finalist.design, other.design) for other in chosen):
             chosen.append(finalist)
     return chosen
+
+
+def _alike(one: DesignedAbsorber, other: DesignedAbsorber) -> bool:
+    """Whether two designs hardly differ, in whatever order their absorbers are."""
+    here, there = sorted(a.row for a in one.absorbers), sorted(a.row for a in other.absorbers)
+    pairs = [pair for ours, theirs in zip(here, there, strict=True) for pair in zip(ours, theirs, strict=True)]
+    return all(math.isclose(ours, theirs, rel_tol=_ALIKE) for ours, theirs in pairs)
 
 
 def none_keeps(work: DesignWork, family: str) -> ParameterError:
@@ -156,4 +181,5 @@ def _limits_text(work: DesignWork) -> str:
 
 
 def _binding(work: DesignWork, family: str) -> str:
-    return work.problem.tier(family).binding(work.limits)
+    tiers = [work.problem.tier(family, count=count) for count in work.settings.counts]
+    return tiers[0].binding(work.limits)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.design.absorber import DesignedAbsorber
+from frahm.design.absorber import DesignedAbsorber, parameters_text
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import ExactJudgement, ExcitedMode, conditions_of, exact_birth, exact_judgement
 from frahm.design.search import BIRTH, GROWTH, STROKE, Corrections, Limits, TierOne
@@ -144,16 +144,14 @@ def _corrected(
 
 
 def _jump(finalist: Finalist) -> str:
-    d = finalist.design
     return (
-        f"kappa {d.kappa:.5g}, linear {d.linear:.4g}, xi2 {d.xi2:.4g}: the exact equations have a response of"
+        f"{parameters_text(finalist.design)}: the exact equations have a response of"
         f" {max(finalist.exact.peaks):.4g} m that one harmonic does not show."
     )
 
 
 def _reason(finalist: Finalist, limits: Limits) -> str:
-    d = finalist.design
     return (
-        f"kappa {d.kappa:.5g}, linear {d.linear:.4g}, xi2 {d.xi2:.4g}: the exact equations have a detached curve at"
+        f"{parameters_text(finalist.design)}: the exact equations have a detached curve at"
         f" {finalist.force_margin:.4g} times the force, short of {limits.force_margin:g}."
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from frahm.case import Case, PolynomialLaw
 from frahm.design.absorber import DesignedAbsorber, left_out, with_design
@@ -55,27 +55,31 @@ def transverse_pair_ratio(stroke_over_length: float) -> float:
     return 2 * (1 - 1 / math.hypot(1.0, s)) / s**2
 
 
-def as_built(case: Case, design: DesignedAbsorber, stroke: float, room: float | None = None) -> Case:
-    """The case with the exact force of the transverse springs of the sheet in place of the cubic law.
+def as_built(
+    case: Case, design: DesignedAbsorber, stroke: float, room: float | None = None, replaced: int | None = None
+) -> Case:
+    """The case with the exact force of the transverse springs of the sheet in place of the cubic laws of a design.
 
     2 k_s y (1 - L/sqrt(L^2 + y^2)) = k3 y^3 (1 - 3/4 s^2 + 5/8 s^4 - ...) with s = y/L, L a quarter of which is the
     stroke, or the room there is: three terms miss it by less than 2e-4 up to there, and stay a hardening spring beyond.
     """
-    host = case.pipe.mass
-    k3, length = host * design.kappa, room or stroke / MOST_SPRING_STROKE
-    odd = (1.0, -0.75 / length**2, 0.625 / length**4)
-    coefficients = [host * design.linear, 0.0]
-    for factor in odd:
+    designed = with_design(case, design, replaced=replaced)
+    host, new = designed.pipe.mass, list(designed.absorbers)
+    for at, one in enumerate(design.absorbers):
+        if one.kappa:
+            law = _transverse_law(
+                host * one.kappa, host * one.linear, host * one.xi2, room or stroke / MOST_SPRING_STROKE
+            )
+            new[at] = new[at].model_copy(update={"law": law})
+    return Case(**({key: getattr(designed, key) for key in designed.model_fields_set} | {"absorbers": tuple(new)}))
+
+
+def _transverse_law(k3: float, k1: float, damping: float, length: float) -> PolynomialLaw:
+    """Three terms of the force of two transverse springs of a length [m]."""
+    coefficients = [k1, 0.0]
+    for factor in (1.0, -0.75 / length**2, 0.625 / length**4):
         coefficients += [k3 * factor, 0.0]
-    law = PolynomialLaw(coefficients=tuple(coefficients[:-1]), damping=host * design.xi2)
-    designed = with_design(case, design)
-    new = designed.absorbers[0].model_copy(update={"law": law})
-    return Case(
-        **(
-            {key: getattr(designed, key) for key in designed.model_fields_set}
-            | {"absorbers": (new, *designed.absorbers[1:])}
-        )
-    )
+    return PolynomialLaw(coefficients=tuple(coefficients[:-1]), damping=damping)
 
 
 def hardware(
@@ -104,6 +108,21 @@ def hardware(
         (textbook formulas, secondary). Coil springs that nobody can wind, and wires that would break, are left out:
         a warning says why and what to take instead.
     """
+    sheets = [_sheet(case, one, stroke, frequency, room, stress) for one in design.absorbers]
+    if len(sheets) == 1:
+        items, warnings = sheets[0]
+    else:
+        items = [
+            replace(item, name=f"absorber {n}: {item.name}") for n, (own, _) in enumerate(sheets, 1) for item in own
+        ]
+        warnings = [w for n, (_, own) in enumerate(sheets, 1) for w in own]
+    return Hardware(tuple(items), tuple(dict.fromkeys((*left_out(case, design.count), *warnings))))
+
+
+def _sheet(
+    case: Case, design: DesignedAbsorber, stroke: float, frequency: float, room: float | None, stress: float | None
+) -> tuple[list[HardwareItem], list[str]]:
+    """Lines and warnings of one absorber."""
     host = case.pipe.mass
     mass, k1, k3, c = (host * value for value in (design.rho2, design.linear, design.kappa, design.xi2))
     items = [
@@ -128,7 +147,7 @@ def hardware(
         unfit = _unfit(not_wound, breaks, stroke)
     sag = _sag(mass * GRAVITY, k1, k3)
     items.append(HardwareItem("sag if gravity acts along the motion", sag, "m", "k1 s + k3 s^3 = m g"))
-    return Hardware(tuple(items), (*left_out(case), *unfit, *_warnings(design, stroke, sag)))
+    return items, [*unfit, *_warnings(design, stroke, sag)]
 
 
 def _transverse_springs(k1: float, springs: CoilSprings, stroke: float, room: float | None) -> list[HardwareItem]:

@@ -73,6 +73,21 @@ class Conditions:
         values = np.array([getattr(one, name) for one in self.disturbances])
         return np.tile(values, len(self.forces) // len(values))
 
+    @property
+    def steps(self) -> Floats:
+        """The different factors on the force [-], in their order."""
+        return np.ascontiguousarray(self.forces[:: len(self.disturbances)])
+
+    @property
+    def first_force(self) -> Conditions:
+        """The rows of the first force, scaled to a factor of 1."""
+        part = slice(0, len(self.disturbances))
+        scale = 1.0 / self.forces[part, None]
+        return replace(
+            self, forces=np.ones(len(self.disturbances)), frequency=self.frequency[part], a=self.a[part],
+            u=scale * self.u[part], b=self.b[part], x=scale * self.x[part], absorber=self.absorber[part],
+        )  # fmt: skip
+
     def reloaded(self, margin: float) -> Conditions:
         """The same with another factor on the force where it is not 1."""
         forces = np.where(self.forces == 1.0, 1.0, margin)
@@ -82,7 +97,7 @@ class Conditions:
 
 @dataclass(frozen=True, eq=False)
 class Host:
-    """A system without its first element and the mass that hangs on it.
+    """A system without the absorbers that are designed: its first elements and the masses that hang on them.
 
     Attributes
     ----------
@@ -92,6 +107,8 @@ class Host:
         Reference frequency omega [rad/s].
     other_damping, other_stiffness : ndarray, shape (n, n)
         Of linear absorbers that stay as they are when the pipe is off.
+    attachments : ndarray, shape (N, n)
+        The same of all absorbers.
     """
 
     mass: Floats
@@ -103,6 +120,13 @@ class Host:
     frequency: float
     other_damping: Floats
     other_stiffness: Floats
+    attachments: Floats
+
+    @functools.cached_property
+    def ratios(self) -> Floats:
+        """Motion of the governing mode where each absorber hangs, over that where the first one does [-], (N,)."""
+        moves = self.attachments @ self._governing_mode
+        return np.asarray(moves / moves[0]) if moves[0] else np.ones(len(moves))
 
     @functools.cached_property
     def modal_mass(self) -> float:
@@ -131,8 +155,9 @@ class Host:
     def check_moves(self) -> None:
         """Refuse an absorber that sits where the governing mode does not move."""
         phi = self._governing_mode
-        if abs(self.attachment @ phi) < 1e-9 * np.max(np.abs(phi)):
-            raise ParameterError("absorbers[0]", "at a node", "a place where the governing mode moves")
+        for at, attachment in enumerate(self.attachments):
+            if abs(attachment @ phi) < 1e-9 * np.max(np.abs(phi)):
+                raise ParameterError(f"absorbers[{at}]", "at a node", "a place where the governing mode moves")
 
     @functools.cached_property
     def _governing_mode(self) -> Floats:
@@ -197,49 +222,52 @@ class Host:
         return at[:, 0], at[:, 1], out[:, 0], out[:, 1]
 
 
-def host_of(system: System) -> Host:
-    """The structure that carries the first element of a system.
+def host_of(system: System, count: int = 1) -> Host:
+    """The structure that carries the first elements of a system.
 
     Raises
     ------
     ParameterError
-        If the first element carries no mass of its own, or other elements are nonlinear.
+        If one of these elements carries no mass of its own, or other elements are nonlinear.
     """
-    if not system.elements:
-        raise ParameterError("absorbers", 0, "a system with an absorber to be designed")
-    direction = system.elements[0].direction
-    own = _own_coordinate(system, direction)
+    if len(system.elements) < count:
+        raise ParameterError("absorbers", len(system.elements), f"a system with {count} absorbers to be designed")
+    directions = [element.direction for element in system.elements[:count]]
+    owns = [_own_coordinate(system, at) for at in range(count)]
     other_stiffness, other_damping = np.zeros((2, system.size, system.size))
-    for index, element in enumerate(system.elements[1:], start=1):
+    for index, element in enumerate(system.elements[count:], start=count):
         if not element.law.is_linear:
-            hint = "One absorber is designed at a time; others of the case may have linear springs."
+            hint = "It stays as it is beside what is designed, and may have a linear spring; --count designs more."
             raise ParameterError(f"absorbers[{index}].law", "nonlinear", "a linear spring", hint=hint)
         n = element.direction
         other_stiffness += element.law.coefficients[0] * np.outer(n, n)
         other_damping += element.law.damping * np.outer(n, n)
-    rest = np.arange(system.size) != own
+    rest = ~np.isin(np.arange(system.size), owns)
+    attachments = np.array([-direction[rest] / direction[own] for own, direction in zip(owns, directions, strict=True)])
     keep = np.ix_(rest, rest)
     return Host(
         mass=np.array(system.mass[keep]),
         damping=np.array(system.damping[keep]),
         stiffness=np.array(system.stiffness[keep]),
         forcing=np.array(system.forcing[rest]),
-        attachment=-direction[rest] / direction[own],
+        attachment=attachments[0],
         output=np.array(system.output[rest]),
         frequency=system.reference_frequency,
         other_damping=other_damping[keep],
         other_stiffness=other_stiffness[keep],
+        attachments=attachments,
     )
 
 
-def _own_coordinate(system: System, direction: Floats) -> int:
-    """Coordinate of the element's own mass, coupled to nothing else."""
+def _own_coordinate(system: System, at: int) -> int:
+    """Coordinate of the own mass of an element, coupled to nothing else."""
+    direction = system.elements[at].direction
     for index in reversed(range(system.size)):
         coupled = np.count_nonzero(system.mass[index]) > 1 or np.any(system.stiffness[index])
-        others = any(element.direction[index] for element in system.elements[1:])
+        others = any(element.direction[index] for i, element in enumerate(system.elements) if i != at)
         if direction[index] and not coupled and not others and not system.forcing[index]:
             return index
-    raise ParameterError("absorbers[0]", "no mass of its own", "an absorber with a mass that hangs on nothing else")
+    raise ParameterError(f"absorbers[{at}]", "no mass of its own", "an absorber with a mass that hangs on nothing else")
 
 
 def _moved(window: tuple[float, float], error: float, moving: bool) -> tuple[float, float]:

@@ -19,14 +19,15 @@ def made(work: DesignWork) -> None:
     stroke = max(best.relative_peak, more.relative_peak if more else 0.0)
     room, stress = settings.spring_length, settings.spring_stress
     found.hardware = hardware(work.case, design, stroke, best.frequency, room, stress)
+    screening = problem.tier(settings.family, count=design.count).screening
     found.tolerance = tolerance_band(
         design, best.worst_pipe_peak, problem.modes_of, problem.disturbances, settings.seed
     )
-    found.sensitivities = sensitivities(
-        design, problem.modes_of, problem.disturbances, problem.tier(settings.family).screening,
-        work.case.pipe.mass,
-    )  # fmt: skip
-    if design.kappa and not design.quintic:
-        built, most = problem.modes(as_built(work.case, design, stroke, room)), FAR * settings.force_margin
+    found.sensitivities = sensitivities(design, problem.modes_of, problem.disturbances, screening, work.case.pipe.mass)
+    if any(one.kappa for one in design.absorbers) and not any(one.quintic for one in design.absorbers):
+        built, most = (
+            problem.modes(as_built(work.case, design, stroke, room, settings.counts[-1])),
+            FAR * settings.force_margin,
+        )
         found.built = work.worst(built)
         found.built_margin, _ = exact_birth(conditions_of(built, problem.disturbances), best.force_margin, most)

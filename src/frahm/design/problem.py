@@ -12,7 +12,7 @@ from frahm.arrays import Floats
 from frahm.assessment.counting import counted_band
 from frahm.assessment.detail import detail_of, fatigue_section
 from frahm.case import Case
-from frahm.design.absorber import DesignedAbsorber, with_design
+from frahm.design.absorber import DesignedAbsorber, together, with_design
 from frahm.design.disturbance import Disturbance, disturbances
 from frahm.design.exact import ExcitedMode, Windows
 from frahm.design.host import Host, Lift, host_of
@@ -20,13 +20,14 @@ from frahm.design.objective import ClimateMean, Objective
 from frahm.design.screening import Screening
 from frahm.design.search import Corrections, Limits, TierOne
 from frahm.design.settings import DesignSettings
-from frahm.design.space import design_space
+from frahm.design.space import DesignSpace, design_space
 from frahm.errors import ParameterError
 from frahm.loads import OperatingRange, operating_range, other_ranges, vortex_shedding, wind_climate
 from frahm.systems import build_system
 
 WIDE = (0.7, 1.3)  # of the pipe's frequency: where the lift may lock in
 _RESPONSE_POINTS, _BIRTH_POINTS, _WIND_POINTS = 121, 481, 161
+_GROUP_POINTS, _GROUP_BIRTHS = 61, 121  # of several absorbers, whose every response takes longer
 _PLACES, _ROUNDS = 7, 3  # positions looked at first, and how often the gaps beside the best are halved
 
 
@@ -50,7 +51,9 @@ class Problem:
     disturbances : list of Disturbance
     limits : Limits
     tiers : dict
-        Closed forms by family, force margin and the mode they are sized for.
+        Closed forms by family, force margin, the mode they are sized for and the number of absorbers.
+    singles : dict
+        Best designs of one absorber by family, which searches for more of them begin at.
     """
 
     case: Case
@@ -62,8 +65,9 @@ class Problem:
     wide: tuple[float, float]
     disturbances: list[Disturbance]
     limits: Limits
-    tiers: dict[tuple[str, float, int | None], TierOne] = field(default_factory=dict)
-    _places: dict[str, float | None] = field(default_factory=dict)
+    tiers: dict[tuple[str, float, int | None, int], TierOne] = field(default_factory=dict)
+    singles: dict[str, list[DesignedAbsorber]] = field(default_factory=dict)
+    _places: dict[tuple[str, int], float | None] = field(default_factory=dict)
     _tried: int = 0
 
     @classmethod
@@ -92,16 +96,17 @@ class Problem:
         )
         conditions = disturbances(
             settings.scatter, settings.quantile, settings.scatter_samples, settings.seed,
-            lock_in=not within.over_wind,
+            lock_in=not within.over_wind, count=settings.counts[-1],
         )  # fmt: skip
-        stops = case.absorbers[0].stops if case.absorbers else None
-        stroke = min(settings.most_stroke, math.inf if stops is None else stops.gap)
+        gaps = [absorber.stops.gap for absorber in case.absorbers[: settings.counts[-1]] if absorber.stops is not None]
+        stroke = min([settings.most_stroke, *gaps])
         limits = Limits(settings.force_margin, stroke, False, settings.spring_length, settings.spring_stress)
         return cls(case, settings, objective, windows, others, asked, wide, conditions, limits)
 
     def check_host(self) -> None:
         """Refuse a case whose other absorbers are nonlinear, or whose absorber sits where nothing moves."""
-        self._host(None if self.settings.position is None else self.settings.position[1])
+        for count in self.settings.counts:
+            self._host(None if self.settings.position is None else self.settings.position[1], count)
 
     def modes(self, case: Case) -> list[ExcitedMode]:
         """A pipe with a device as winds excite each of its modes, the governing one first."""
@@ -110,7 +115,11 @@ class Problem:
 
     def modes_of(self, design: DesignedAbsorber) -> list[ExcitedMode]:
         """The pipe with a design, see `modes`."""
-        return self.modes(with_design(self.case, design))
+        return self.modes(self.case_with(design))
+
+    def case_with(self, design: DesignedAbsorber) -> Case:
+        """The case with a design in place of the absorbers that are designed."""
+        return with_design(self.case, design, replaced=self.settings.counts[-1])
 
     def modes_of_errors(self, case: Case) -> list[ExcitedMode]:
         """As `modes`, where a pipe off its frequency is looked at: all frequencies a fixed lift may lock in to."""
@@ -129,45 +138,53 @@ class Problem:
         """Largest mass ratio a design may have [-]."""
         return _most_mass_ratio(self.settings)
 
-    def tier(self, family: str, margin: float | None = None, sized_for: int | None = None) -> TierOne:
+    def tier(
+        self, family: str, margin: float | None = None, sized_for: int | None = None, count: int | None = None
+    ) -> TierOne:
         """Closed form for a family, with the force given and with its margin, at its best place.
 
-        Springs and dampers are looked for around what suits the governing mode, or another one of `others`.
+        Springs and dampers are looked for around what suits the governing mode, or another one of `others`. The number
+        of absorbers is the least asked for by default.
         """
         most = self.settings.force_margin if margin is None else margin
-        if (family, most, sized_for) not in self.tiers:
-            self.tiers[family, most, sized_for] = self._tier(family, most, self.place(family), sized_for)
-        return self.tiers[family, most, sized_for]
+        number = self.settings.counts[0] if count is None else count
+        key = (family, most, sized_for, number)
+        if key not in self.tiers:
+            self.tiers[key] = self._tier(family, most, self.place(family, number), sized_for, number)
+        return self.tiers[key]
 
     def admits(self, design: DesignedAbsorber) -> bool:
         """Whether a design keeps the ranges of spring and damper."""
         ranges = {name: getattr(self.settings, name) for name in ("linear", "kappa", "quintic", "xi2")}
         slack = 1e-6
         return all(
-            span is None or span[0] * (1 - slack) <= getattr(design, name) <= span[1] * (1 + slack)
+            span is None or span[0] * (1 - slack) <= getattr(one, name) <= span[1] * (1 + slack)
             for name, span in ranges.items()
+            for one in design.absorbers
         )
 
     def avoid(self, family: str, design: DesignedAbsorber, sized_for: int | None = None) -> None:
         """Search a family no longer near a design that failed."""
-        tier = self.tier(family, sized_for=sized_for)
-        values = (design.rho2, design.linear, design.kappa, design.xi2, design.quintic)
-        tier.avoid(np.array([value * self.case.pipe.mass for value in values]))
+        self.tier(family, sized_for=sized_for, count=design.count).avoid(self.row(design))
 
-    def place(self, family: str) -> float | None:
-        """Position of the absorber that is best by the closed form [m]; None where none is asked for."""
+    def row(self, design: DesignedAbsorber) -> Floats:
+        """A design as the closed form takes it, (5 N,), in SI units."""
+        return np.array(design.row) * self.case.pipe.mass
+
+    def place(self, family: str, count: int = 1) -> float | None:
+        """Position of the absorbers that is best by the closed form [m]; None where none is asked for."""
         if self.settings.position is None:
             return None
-        if family not in self._places:
-            self._places[family] = self._best_place(family, *self.settings.position)
-        return self._places[family]
+        if (family, count) not in self._places:
+            self._places[family, count] = self._best_place(family, count, *self.settings.position)
+        return self._places[family, count]
 
-    def _best_place(self, family: str, lo: float, hi: float) -> float:
+    def _best_place(self, family: str, count: int, lo: float, hi: float) -> float:
         known: dict[float, float] = {}
 
         def look(place: float) -> None:
             try:
-                tier = self._tier(family, self.settings.force_margin, place)
+                tier = self._tier(family, self.settings.force_margin, place, None, count)
             except ParameterError:  # the governing mode does not move there
                 known[place] = math.inf
                 return
@@ -185,27 +202,33 @@ class Problem:
                     look(0.5 * (places[at] + places[other]))
         return min(sorted(known), key=lambda place: known[place])
 
-    def _host(self, place: float | None, mode: int | None = None, speed: float | None = None) -> Host:
-        """The pipe as an absorber feels it, where a mode governs; by default that of the case."""
+    def _host(self, place: float | None, count: int, mode: int | None = None, speed: float | None = None) -> Host:
+        """The pipe as absorbers feel it, where a mode governs; by default that of the case."""
         ratio = self.settings.mass_ratio
         mass = ratio[0] if isinstance(ratio, tuple) else ratio
-        case = with_design(self.case, DesignedAbsorber(mass or 1.0, 0.0, 1.0, 0.0, position=place))
-        return host_of(build_system(case if mode is None else governed(case, mode, speed)))
+        any_absorber = DesignedAbsorber((mass or 1.0) / count, 0.0, 1.0, 0.0, position=place)
+        case = self.case_with(together([any_absorber] * count))
+        return host_of(build_system(case if mode is None else governed(case, mode, speed)), count)
 
-    def _tier(self, family: str, margin: float, place: float | None, sized_for: int | None = None) -> TierOne:
-        host = self._host(place)
+    def _tier(self, family: str, margin: float, place: float | None, sized_for: int | None, count: int) -> TierOne:
+        host = self._host(place, count)
         host.check_moves()
         forces = sorted({1.0, margin}) if family != "tuned" else [1.0]
         others = tuple(
-            self._screening(self._host(place, mode, speed), windows, forces, mode)
+            self._screening(self._host(place, count, mode, speed), windows, forces, mode)
             for mode, speed, windows in self.others
         )
         governing = self._screening(host, self.windows, forces, self.case.pipe.governing_mode)
         screening = dataclasses.replace(governing, others=others)
         settings = self.settings if family == self.settings.family else self.settings.for_rival()
-        sizing = host if sized_for is None else self._host(place, sized_for)
-        space = design_space(sizing, self.case.pipe.mass, family, settings)
-        return TierOne(screening, dataclasses.replace(space, position=place), self.objective, self.limits)
+        sizing = host if sized_for is None else self._host(place, count, sized_for)
+        space = dataclasses.replace(design_space(sizing, self.case.pipe.mass, family, settings, count), position=place)
+        return TierOne(screening, space, self.objective, self.limits, known=self._known(family, space))
+
+    def _known(self, family: str, space: DesignSpace) -> Floats:
+        """What the search for several absorbers of a family begins at besides: the best single ones, split."""
+        single = [design for design in self.singles.get(family, ()) if space.count > 1]
+        return np.array([space.split(self.row(design)) for design in single]).reshape(len(single), 5 * space.count)
 
     def counted(self) -> list[tuple[int, tuple[float, float]]]:
         """Modes besides the governing one whose damage counts, and the winds of each [m/s]."""
@@ -219,11 +242,13 @@ class Problem:
         """One mode under all disturbances: where the response counts, and where detached curves are looked for."""
         lift: Lift | None = None if windows.axis is None else _lift(windows.axis)
         wide = windows.wide if lift is None else windows.window
+        single = len(host.attachments) == 1
+        responses, around = (_RESPONSE_POINTS, _BIRTH_POINTS) if single else (_GROUP_POINTS, _GROUP_BIRTHS)
         counts = host.conditions(
-            self.disturbances, windows.window, _RESPONSE_POINTS, moving=windows.moving, forces=forces, lift=lift
+            self.disturbances, windows.window, responses, moving=windows.moving, forces=forces, lift=lift
         )
         moving = lift is None or windows.moving
-        births = host.conditions(self.disturbances, wide, _BIRTH_POINTS, moving=moving, lift=lift)
+        births = host.conditions(self.disturbances, wide, around, moving=moving, lift=lift)
         governing = self.objective.over_climate and windows is self.windows
         counted = governing or (mode, windows.range(Disturbance()).winds) in self.counted()
         return Screening(host, counts, births, self._climate(host, windows, mode) if counted else None)

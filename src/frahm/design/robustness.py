@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,7 +20,7 @@ TOLERANCES = (0.005, 0.01, 0.02, 0.03, 0.05, 0.08, 0.1, 0.15)
 SLACK = 1.1  # the guarantee holds while the worst peak stays within ten per cent of the promise
 _STEP = 0.02
 _SAMPLES = 16  # initial states per frequency at the worst corner
-_PARAMETERS = ("rho2", "linear", "kappa", "xi2", "quintic")
+_MOST_CORNERS = 16  # as many as two values of four parameters have
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,10 @@ class ToleranceBand:
         Whether the attractors at that corner agree.
     breaks : str
         What ends the band; empty if the largest tolerance is kept.
+    corners : int
+        Number of corners looked at.
+    of_corners : int
+        Number of corners there are.
     """
 
     tolerance: float
@@ -47,6 +51,8 @@ class ToleranceBand:
     corner: DesignedAbsorber
     verified: bool
     breaks: str
+    corners: int = 0
+    of_corners: int = 0
 
 
 @dataclass(frozen=True)
@@ -83,18 +89,36 @@ def tolerance_band(
         modes_of(worst), disturbances, Objective(), samples=_SAMPLES, seed=seed, refine=False, quick=True
     )
     agree = seen.verified and seen.pipe_peak <= SLACK * promise
-    return ToleranceBand(tolerance, peak, worst, agree, breaks)
+    return ToleranceBand(tolerance, peak, worst, agree, breaks, len(corners(design, 0.0)), 2 ** len(_varied(design)))
 
 
 def corners(design: DesignedAbsorber, tolerance: float) -> list[DesignedAbsorber]:
-    """All designs whose every parameter is off by the tolerance one way or the other."""
-    there = [name for name in _PARAMETERS if getattr(design, name)]
-    return [
-        replace(
-            design, **{name: getattr(design, name) * (1 + s * tolerance) for name, s in zip(there, sign, strict=True)}
-        )
-        for sign in itertools.product((-1, 1), repeat=len(there))
-    ]
+    """Designs whose every parameter is off by the tolerance one way or the other.
+
+    All of them; where there are more than `_MOST_CORNERS`, as many drawn from them, the two with all parameters off
+    alike among them.
+    """
+    there = _varied(design)
+    return [_off(design, there, signs, tolerance) for signs in _signs(len(there))]
+
+
+def _varied(design: DesignedAbsorber) -> list[str]:
+    """Names of the parameters that can be off: all but places."""
+    return [name for name, value in design.parameters.items() if value and name.split("_")[0] != "position"]
+
+
+def _signs(count: int) -> np.ndarray:
+    """Rows (n, count) of -1 and 1."""
+    if 2**count <= _MOST_CORNERS:
+        return np.array(list(itertools.product((-1, 1), repeat=count)))
+    drawn = np.random.default_rng(0).choice((-1, 1), size=(_MOST_CORNERS - 2, count))
+    return np.vstack([-np.ones(count), np.ones(count), drawn])
+
+
+def _off(design: DesignedAbsorber, names: Sequence[str], signs: np.ndarray, tolerance: float) -> DesignedAbsorber:
+    for name, sign in zip(names, signs, strict=True):
+        design = design.changed(name, 1 + float(sign) * tolerance)
+    return design
 
 
 def sensitivities(
@@ -103,13 +127,10 @@ def sensitivities(
 ) -> tuple[Sensitivity, ...]:  # fmt: skip
     """Slopes over +-2 % of every parameter: peaks by the exact responses, births by the closed form."""
     found = []
-    for name in _PARAMETERS:
-        value = getattr(design, name)
-        if not value:
-            continue
-        ends = [replace(design, **{name: value * (1 + sign * _STEP)}) for sign in (-1, 1)]
+    for name in _varied(design):
+        ends = [design.changed(name, 1 + sign * _STEP) for sign in (-1, 1)]
         low, high = (exact_judgement(modes_of(end), disturbances).pipe_peak for end in ends)
-        rows = np.array([[host_mass * getattr(end, key) for key in _PARAMETERS] for end in ends])
+        rows = host_mass * np.array([end.row for end in ends])
         births = screening.births(rows) if design.nonlinear else np.array([math.inf, math.inf])
         slope = math.log(births[1] / births[0]) / (2 * _STEP) if np.all(np.isfinite(births)) else math.nan
         found.append(Sensitivity(name, math.log(high / low) / (2 * _STEP), slope))

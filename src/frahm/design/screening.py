@@ -1,4 +1,10 @@
-"""Tier 1: many designs at once by the closed form of one harmonic, in threads."""
+"""Tier 1: many designs at once by the closed form of one harmonic, in threads.
+
+Absorbers that hang elsewhere than the first one are screened as if the pipe moved in its governing mode alone: one
+where that mode moves rho times as much is the same as one beside the first, with rho^2 times the mass, damping and
+linear stiffness, rho^4 times the cubic stiffness and rho^6 times that of the fifth power. On a pipe of one mode this is
+exact.
+"""
 
 from __future__ import annotations
 
@@ -11,18 +17,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frahm.arrays import Floats
+from frahm.design.group_kernels import group_amplitudes, group_births, group_responses
 from frahm.design.host import Conditions, Host
 from frahm.design.kernels import amplitude_tables, births, largest_responses, screened
 from frahm.design.objective import ClimateMean
 
-_BATCH = 2000
+_BATCH, _GROUPS = 2000, 6  # designs a thread takes at once, of one absorber and of several
+_POWERS = np.array([2, 2, 4, 2, 6])  # of the ratio of motions that m, k1, k3, c, k5 grow with
 
 
 @dataclass(frozen=True, eq=False)
 class Screening:
-    """A host under conditions, ready to be asked about designs (D, 5).
+    """A host under conditions, ready to be asked about designs (D, 5 N).
 
-    A design is m [kg], k1 [N/m], k3 [N/m^3], c [N s/m], k5 [N/m^5].
+    A design is m [kg], k1 [N/m], k3 [N/m^3], c [N s/m], k5 [N/m^5] of the first absorber, then of the next.
 
     Attributes
     ----------
@@ -74,19 +82,29 @@ class Screening:
         """Least factor on the force [-] at which a detached curve is born, shape (D,); infinite where none is."""
         found, wide = np.empty(len(designs)), self.wide
 
-        def run(part: slice) -> None:
-            births(wide.frequency, wide.a, wide.u, wide.absorber, designs[part], found[part])
+        groups = self._groups(designs)
 
-        self._in_threads(run, len(designs))
+        def run(part: slice) -> None:
+            if groups is None:
+                births(wide.frequency, wide.a, wide.u, wide.absorber, designs[part], found[part])
+            else:
+                group_births(wide.frequency, wide.a, wide.u, wide.absorber, groups[part], found[part])
+
+        self._in_threads(run, len(designs), groups is not None)
         return np.min([found, *(mode.births(designs) for mode in self.others)], axis=0)
 
     def births_by_condition(self, design: Floats) -> Floats:
         """Least factor on the force [-] at a birth of one design (5,), for every mode and every disturbance."""
         wide = self.wide
         found = np.empty((len(wide.disturbances), 1))
+        groups = self._groups(design[None])
         for row, into in enumerate(found):
             part = slice(row, row + 1)
-            births(wide.frequency[part], wide.a[part], wide.u[part], wide.absorber[part], design[None], into)
+            asked = wide.frequency[part], wide.a[part], wide.u[part], wide.absorber[part]
+            if groups is None:
+                births(*asked, design[None], into)
+            else:
+                group_births(*asked, groups, into)
         return np.concatenate([found[:, 0], *(mode.births_by_condition(design) for mode in self.others)])
 
     def responses(self, designs: Floats) -> tuple[Floats, Floats]:
@@ -99,10 +117,18 @@ class Screening:
         mode[:, 1] = host.modal_damping * c.pipe_frequencies * c.pipe_dampings
         mode[:, 2] = host.modal_mass
 
-        def run(part: slice) -> None:
-            screened(*c.arrays, mode, designs[part], found[part], peaks[part])
+        groups, given = self._groups(designs), c.first_force
 
-        self._in_threads(run, len(designs))
+        def run(part: slice) -> None:
+            if groups is None:
+                screened(*c.arrays, mode, designs[part], found[part], peaks[part])
+            else:
+                rows = mode[: len(given.forces)]
+                group_responses(
+                    *given.arrays, rows, c.steps, groups[part], np.abs(host.ratios), found[part], peaks[part]
+                )
+
+        self._in_threads(run, len(designs), groups is not None)
         parts = [(peaks, found), *(mode.responses(designs) for mode in self.others)]
         return np.hstack([part for part, _ in parts]), np.max([largest for _, largest in parts], axis=0)
 
@@ -113,17 +139,29 @@ class Screening:
             return np.empty((len(designs), 0))
         others = [mode.climate_means(designs) for mode in self.others if mode.climate is not None]
         found = np.empty((len(designs), len(mean.conditions.disturbances)))
+        groups = self._groups(designs)
 
         def run(part: slice) -> None:
             tables = np.empty((part.stop - part.start, *mean.conditions.frequency.shape))
-            amplitude_tables(*mean.conditions.arrays, designs[part], tables)
+            if groups is None:
+                amplitude_tables(*mean.conditions.arrays, designs[part], tables)
+            else:
+                group_amplitudes(*mean.conditions.arrays, groups[part], tables)
             found[part] = mean.means(tables)
 
-        self._in_threads(run, len(designs))
+        self._in_threads(run, len(designs), groups is not None)
         return np.asarray(np.sum([found, *others], axis=0))
 
-    def _in_threads(self, run: Callable[[slice], None], count: int) -> None:
-        parts = [slice(at, min(at + _BATCH, count)) for at in range(0, count, _BATCH)]
+    def _groups(self, designs: Floats) -> Floats | None:
+        """Designs (D, N, 5) as if all absorbers hung where the first one does; None for one absorber."""
+        groups = np.reshape(designs, (len(designs), -1, 5))
+        if groups.shape[1] == 1:
+            return None
+        return np.asarray(groups * np.abs(self.host.ratios)[:, None] ** _POWERS)
+
+    def _in_threads(self, run: Callable[[slice], None], count: int, of_groups: bool = False) -> None:
+        batch = _GROUPS if of_groups else _BATCH
+        parts = [slice(at, min(at + batch, count)) for at in range(0, count, batch)]
         if len(parts) == 1:
             run(parts[0])
             return
@@ -137,8 +175,12 @@ def fold_ceilings(screening: Screening, designs: Floats) -> Floats:
 
     m Omega^2 X = (k1 - m Omega^2 + n + i Omega c) Z has folds where 3 n^2 + 4 p n + p^2 + q^2 = 0 with
     p = k1 - m Omega^2 and q = Omega c, n = 3/4 k3 |Z|^2: the smaller root is the upper fold of the pipe. The largest
-    over all disturbances and modes is taken. A part of the fifth power is left out.
+    over all absorbers, disturbances and modes is taken. A part of the fifth power is left out.
     """
+    if designs.shape[1] > 5:
+        return np.fmax.reduce(
+            [fold_ceilings(screening, designs[:, at : at + 5]) for at in range(0, designs.shape[1], 5)]
+        )
     moved = [mode for mode in (screening, *screening.others) if math.isfinite(mode.host.output_ratio)]
     ceilings = np.array([_ceilings(mode.host, mode.conditions, designs) for mode in moved])
     largest = np.max(ceilings, axis=0)

@@ -23,6 +23,10 @@ from frahm.design.springs import coil_springs
 STROKE, GROWTH, BIRTH, CEILING, SPRINGS, PEAKS = range(6)  # columns of what is judged
 _GRID = {2: (72, 72), 3: (24, 30, 26)}
 _SOBOL = 2**14  # designs of the first look at more parameters
+_SOBOL_OF_GROUPS = 2**11  # the same of several absorbers, whose closed form takes a hundred times as long
+_BESIDE = 0.04  # of the cube
+_ASKED = 2**8  # of these: how many are asked for their detached curves
+_CONVERGED, _CONVERGED_GROUPS = 1e-6, 1e-3  # spread of the values over their mean that ends a search
 _MEMBERS, _GENERATIONS, _SEED = 36, 80, 1
 _STARTS = 8
 _RESERVE = 1.05  # on the screened stroke, where springs must fit
@@ -75,9 +79,12 @@ class Limits:
     stress: float | None = None
 
     def filling(self, designs: Floats, stroke: Floats) -> Floats:
-        """Share (D,) of their free length that the coils of transverse springs of designs (D, 5) take [-]."""
+        """Share (D,) of their free length that the coils of transverse springs of designs (D, 5 N) take [-]."""
         if self.stress is None:
             return np.zeros(len(designs))
+        if designs.shape[1] > 5:
+            parts = [designs[:, at : at + 5] for at in range(0, designs.shape[1], 5)]
+            return np.asarray(np.max([self.filling(part, stroke) for part in parts], axis=0))
         springs = coil_springs(designs[:, LINEAR], designs[:, CUBIC], stroke, self.room, self.stress)
         there = designs[:, CUBIC] > 0
         return np.divide(springs.solid, springs.free, out=np.zeros(len(designs)), where=there)
@@ -85,13 +92,14 @@ class Limits:
 
 @dataclass(eq=False)
 class Ledger:
-    """What a search has come to: designs judged, and where in the cube it is not to look again (d,).
+    """What a search has come to: designs judged, where in the cube it is not to look again (d,), and its last best.
 
     One for a search and all its parts, under whatever limits these are.
     """
 
     count: int = 0
     avoided: list[Floats] = field(default_factory=list)
+    last: Floats | None = None
 
 
 @dataclass(eq=False)
@@ -103,15 +111,19 @@ class TierOne:
     objective: Objective
     limits: Limits
     ledger: Ledger = field(default_factory=Ledger)
+    known: Floats = field(default_factory=lambda: np.empty((0, 5)))  # designs the search starts from besides
 
     def __post_init__(self) -> None:
-        if self.space.size in _GRID:
+        if self.space.count == 1 and self.space.size in _GRID:
             axes = [np.linspace(0.0, 1.0, n) for n in _GRID[self.space.size]]
             self.grid = np.array(list(itertools.product(*axes)))
             self.step = 1.0 / (np.array(_GRID[self.space.size]) - 1)
         else:
-            self.grid = qmc.Sobol(self.space.size, seed=_SEED).random(_SOBOL)
-            self.step = np.full(self.space.size, _SOBOL ** (-1 / self.space.size))
+            number = _SOBOL if self.space.count == 1 else _SOBOL_OF_GROUPS
+            self.grid = qmc.Sobol(self.space.size, seed=_SEED).random(number)
+            self.step = np.full(self.space.size, number ** (-1 / self.space.size))
+        if len(self.known):
+            self.grid = np.vstack([self.grid, np.clip(self.space.units(self.known), 0.0, 1.0)])
         designs = self.space.designs(self.grid)
         self.grid_judged = self.judge(designs)
 
@@ -121,11 +133,25 @@ class TierOne:
         """  # noqa: D205
         self.ledger.count += len(designs)
         screening = self.screening
-        births, ceilings = screening.births(designs), fold_ceilings(screening, designs)
+        ceilings = fold_ceilings(screening, designs)
         peaks, others = screening.responses(designs)
+        births = self._births(designs, peaks)
         filling = self.limits.filling(designs, _RESERVE * others[:, 0])
         means = screening.climate_means(designs)
         return np.column_stack([others, births, ceilings, filling, peaks / screening.forces, means])
+
+    def _births(self, designs: Floats, peaks: Floats) -> Floats:
+        """Least factors (D,) on the force at a birth.
+
+        Of many designs of several absorbers only those with the least responses are asked, for the others are not
+        chosen; a search that comes to one of them asks for it then.
+        """
+        if self.space.count == 1 or len(designs) <= _ASKED:
+            return self.screening.births(designs)
+        births = np.full(len(designs), np.inf)
+        best = np.argsort(np.max(peaks, axis=1), kind="stable")[:_ASKED]
+        births[best] = self.screening.births(designs[best])
+        return births
 
     @property
     def peak_columns(self) -> slice:
@@ -167,7 +193,7 @@ class TierOne:
         return other
 
     def best(self, limits: Limits, corrections: Corrections) -> tuple[Floats, float] | None:
-        """Design (5,) with the least value expected, and that value; None if no design keeps the limits.
+        """Design (5 N,) with the least value expected, and that value; None if no design keeps the limits.
 
         Differential evolution from the best designs of the grid and the best that lie apart from them.
         """
@@ -175,6 +201,8 @@ class TierOne:
 
         values = self._allowed(self.grid, self.predicted(self.grid_judged, limits, corrections))
         members = self._members(values)
+        if self.space.count > 1 and len(members) and self.ledger.last is not None:
+            members = self._beside(self.ledger.last, members)
         if not len(members):
             return None
         worst = 10.0 * float(np.max(values[np.isfinite(values)]))
@@ -184,14 +212,23 @@ class TierOne:
             peaks = self._allowed(units.T, peaks)
             return np.where(np.isfinite(peaks), peaks, worst)
 
+        tolerance = _CONVERGED if self.space.count == 1 else _CONVERGED_GROUPS
         found = differential_evolution(
             objective, [(0.0, 1.0)] * self.space.size, init=members, maxiter=_GENERATIONS, vectorized=True,
-            updating="deferred", polish=False, seed=_SEED, tol=1e-6, mutation=(0.4, 0.9), recombination=0.9,
+            updating="deferred", polish=False, seed=_SEED, tol=tolerance, mutation=(0.4, 0.9), recombination=0.9,
         )  # fmt: skip
+        self.ledger.last = found.x
         return self.space.designs(found.x[None])[0], float(found.fun)
 
+    def _beside(self, last: Floats, members: Floats) -> Floats:
+        """Population of a search whose corrections have changed a little: half of it beside what was best before."""
+        count = len(members) // 2
+        near = last + np.random.default_rng(_SEED).normal(0.0, _BESIDE, (count, len(last)))
+        near[0] = last
+        return np.clip(np.vstack([near, members[: len(members) - count]]), 0.0, 1.0)
+
     def avoid(self, design: Floats) -> None:
-        """Search no longer near a design (5,), because it was found worse than it looked."""
+        """Search no longer near a design (5 N,), because it was found worse than it looked."""
         self.ledger.avoided.append(self.space.units(design[None])[0])
 
     def _allowed(self, units: Floats, values: Floats) -> Floats:

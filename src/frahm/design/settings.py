@@ -25,7 +25,14 @@ class DesignSettings(Design):
     family : {"sink", "tuned", "mixed"}
         Cubic spring alone, linear spring alone, or both.
     mass_ratio : float or tuple of float, optional
-        Mass of the absorber over that of the pipe [-], or a range of it.
+        Mass of all absorbers over that of the pipe [-], or a range of it.
+    count : int or tuple of int
+        Number of absorbers designed together, or the least and the most, of which the best number is chosen. They hang
+        at one place, or where the case has its absorbers.
+    mass_shares : {"equal", "free"} or tuple of float
+        How several absorbers share the mass [-].
+    devices : {"any", "equal"}
+        Whether several absorbers are one drawing.
     linear, kappa, quintic, xi2 : tuple of float, optional
         Ranges (lo, hi) per mass of the pipe [1/s^2], [1/(m^2 s^2)], [1/(m^4 s^2)], [1/s]; by default wide ones that
         scale with the pipe, and no quintic part.
@@ -96,5 +103,7 @@ def settings_for(
     values = {} if base is None else {name: getattr(base, name) for name in base.model_fields_set}
     values |= changes | ({} if mass_ratio is None else {"mass_ratio": mass_ratio})
     if values.get("mass_ratio") is None:
-        values["mass_ratio"] = case.absorbers[0].mass / case.pipe.mass if case.absorbers else _MASS_RATIO
+        most = DesignSettings(**values).counts[-1]
+        mass = sum(absorber.mass for absorber in case.absorbers[:most])
+        values["mass_ratio"] = mass / case.pipe.mass if case.absorbers else _MASS_RATIO
     return DesignSettings(**values)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from frahm.case import Case
 
 SIMPLEST_FIRST = ("none", "case", "tuned mass damper", "sink", "mixed")
-_ALIKE = 0.995  # values that differ by less are one
+ALIKE = 0.995  # values that differ by less are one
 NAMES = ("none", "case", "sink", "tuned mass damper", "mixed")
 
 
@@ -53,6 +53,8 @@ class Rival:
         not searched.
     fatigue : dict or None
         Damage, life and utilisation over the climate of a case that asks for them.
+    count : int
+        Number of absorbers.
     """
 
     __repr__ = readable.summary
@@ -65,6 +67,7 @@ class Rival:
     disturbance: Disturbance
     force_margin: float
     fatigue: dict[str, Any] | None = None
+    count: int = 1
 
     @property
     def worst_pipe_peak(self) -> float:
@@ -139,6 +142,9 @@ class DesignStudy:
     best_case : Case
         The case with it, ready to run.
     comparison : tuple of Rival
+        Of every family the best number of absorbers that were asked for.
+    by_count : tuple of Rival
+        The best design of every family and every number of absorbers.
     errors : tuple of float
         Frequencies of the pipe over the nominal one, of `error_table` [-].
     error_table : dict of str to tuple of float
@@ -199,6 +205,7 @@ class DesignStudy:
     acceptance: dict[str, Any] = field(default_factory=dict)
     decision: dict[str, Any] = field(default_factory=dict)
     lasting: dict[str, xr.Dataset] = field(default_factory=dict)
+    by_count: tuple[Rival, ...] = ()
 
     @property
     def objective(self) -> Objective:
@@ -242,13 +249,18 @@ class DesignStudy:
             "best": rival_row(self.best),
             "with_margin": {"force": self.settings.force_margin, "pipe_peak": self.with_margin},
             "comparison": [rival_row(rival) for rival in self.comparison],
+            "by_count": [
+                {"name": r.name, "count": r.count, "absorbers": absorber_rows(r.design), "value": r.value,
+                 "verified": r.verified}
+                for r in self.by_count
+            ],
             "headline": self.headline,
             "acceptance": self.acceptance,
             "ranking": {f"{100 * (error - 1):+.3g} %": self.ranking(error) for error in self.errors},
             "frequency_errors": self.frequency_errors(),
             "trade_off": [
-                {"force_margin": p.force_margin, **p.design.parameters, "value": p.value,
-                 "worst_pipe_peak": p.worst_pipe_peak, "verified": p.verified, "tier": p.tier}
+                {"force_margin": p.force_margin, **p.design.parameters, "absorbers": absorber_rows(p.design),
+                 "value": p.value, "worst_pipe_peak": p.worst_pipe_peak, "verified": p.verified, "tier": p.tier}
                 for p in self.trade_off
             ],
             "hardware": hardware_rows(self.hardware),
@@ -287,9 +299,18 @@ class DesignStudy:
             ),
             "margin_pipe_peak": labelled("margin_index", [p.worst_pipe_peak for p in curve], peak, "m"),
         }
+        most = max([1, *(r.design.count for r in rivals if r.design is not None)])
+        variables["comparison_count"] = labelled("rival", [r.count for r in rivals], "number of absorbers", "1")
         for name, unit in UNITS.items():
             values = [math.nan if r.design is None else getattr(r.design, name) for r in rivals]
             variables[f"comparison_{name}"] = labelled("rival", values, f"{name} over mass of the pipe", unit)
+            each = np.full((len(rivals), most), math.nan)
+            for at, rival in enumerate(rivals):
+                for number, row in enumerate(absorber_rows(rival.design)):
+                    each[at, number] = row[name]
+            variables[f"comparison_each_{name}"] = labelled(
+                ("rival", "absorber"), each, f"{name} over mass of the pipe, of each absorber", unit
+            )
             values = [getattr(p.design, name) for p in curve]
             variables[f"margin_{name}"] = labelled("margin_index", values, f"{name} over mass of the pipe", unit)
         return xr.Dataset(variables, attrs={"frahm": self.version, "case": self.case.name, "verdict": self.verdict})
@@ -298,14 +319,15 @@ class DesignStudy:
 def first_of(rivals: Sequence[Rival]) -> Rival:
     """Best verified device; of those as good, the simplest."""
     best = min(rivals, key=lambda rival: (not rival.verified, rival.value))
-    alike = [one for one in rivals if one.verified == best.verified and _ALIKE * one.value <= best.value]
+    alike = [one for one in rivals if one.verified == best.verified and ALIKE * one.value <= best.value]
     return min(alike, key=lambda rival: SIMPLEST_FIRST.index(rival.name))
 
 
 def headline(best: Rival, first: Rival, objective: Objective) -> str:
     """What was chosen, and whether another device does better."""
-    text = f"Best {best.name}{_corner(best)}: {objective.title} {objective.shown(best.value)}"
-    if first.name in (best.name, "none") or not first.value < _ALIKE * best.value:
+    many = "" if best.count == 1 else f", {best.count} absorbers"
+    text = f"Best {best.name}{many}{_corner(best)}: {objective.title} {objective.shown(best.value)}"
+    if first.name in (best.name, "none") or not first.value < ALIKE * best.value:
         return f"{text}; no device compared does better."
     return f"{text}; the {first.name} does better, {objective.shown(first.value)}, and is not what was asked for."
 
@@ -316,7 +338,13 @@ def _corner(best: Rival) -> str:
         return ""
     if not best.design.nonlinear:
         return ", which is a tuned mass damper without a cubic spring"
-    return "" if best.design.linear else ", which is a sink without a linear spring"
+    return "" if best.design.family == "mixed" else ", which is a sink without a linear spring"
+
+
+def absorber_rows(design: DesignedAbsorber | None) -> list[dict[str, Any]]:
+    """Parameters of every absorber of a device as plain data; empty for one that is not of the family."""
+    names = ("kappa", "linear", "xi2", "rho2", "quintic", "position")
+    return [] if design is None else [{name: getattr(one, name) for name in names} for one in design.absorbers]
 
 
 def hardware_rows(sheet: Hardware | None) -> list[dict[str, Any]]:
@@ -329,7 +357,8 @@ def tolerance_row(band: ToleranceBand | None) -> dict[str, Any] | None:
     if band is None:
         return None
     return {"tolerance": band.tolerance, "pipe_peak": band.pipe_peak, "corner": band.corner.parameters,
-            "verified": band.verified, "breaks": band.breaks}  # fmt: skip
+            "verified": band.verified, "breaks": band.breaks,
+            "corners": band.corners, "of_corners": band.of_corners}  # fmt: skip
 
 
 def rival_row(rival: Rival) -> dict[str, Any]:
@@ -338,7 +367,8 @@ def rival_row(rival: Rival) -> dict[str, Any]:
         "name": rival.name,
         **rival.worst.row(),
         **(rival.design.parameters if rival.design else {}),
-        "count": 0 if rival.name == "none" else 1,
+        "count": rival.count,
+        "absorbers": absorber_rows(rival.design),
         "value": rival.value,
         "worst_pipe_peak": rival.worst_pipe_peak,
         "worst_over_scatter": rival.scattered.pipe_peak,

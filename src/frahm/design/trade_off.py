@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from frahm.design.absorber import with_design
 from frahm.design.families import DEVICES
 from frahm.design.family_search import family_finalists
 from frahm.design.study import MarginPoint, Rival
@@ -21,14 +20,16 @@ def trade_off(work: DesignWork) -> None:
         return
     work.step("force margins")
     sized_for = work.sized_for.get(best.design)
-    work.problem.tier(family)  # finds its place once
+    count = best.design.count
+    work.problem.tier(family, count=count)  # finds its place once
 
     def candidate(margin: float) -> tuple[Rival | None, list[str]]:
-        kept, discarded = family_finalists(work, family, replace(work.limits, force_margin=margin), sized_for=sized_for)
+        limits = replace(work.limits, force_margin=margin)
+        kept, discarded = family_finalists(work, family, limits, count, sized_for=sized_for)
         if not kept:
             return None, discarded
         design = kept[0].design
-        checked = work.verify(with_design(work.case, design))
+        checked = work.verify(work.problem.case_with(design))
         reason = work.beyond(design, checked.relative_peak)
         if reason:
             return None, [*discarded, f"With a force margin of {margin:g}: {reason}."]

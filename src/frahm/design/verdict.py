@@ -44,17 +44,22 @@ def _given(scatter: Scatter) -> str:
 def _best(by_name: dict[str, Rival], scatter: Scatter, objective: Objective) -> str:
     first, none = first_of(list(by_name.values())), by_name.get("none")
     tuned, mixed = by_name.get("tuned mass damper"), by_name.get("mixed")
-    text = f"{_given(scatter)}, {word(first.name)} has the smallest {objective.title}, {objective.shown(first.value)}"
+    text = f"{_given(scatter)}, {word(first.name)}{_many(first)} has the smallest {objective.title},"
+    text += f" {objective.shown(first.value)}"
     if none and none is not first and none.value > 0:
         text += f", {100 * first.value / none.value:.3g} % of that without absorber"
     sink = by_name.get("sink")
     if sink and first is not sink:
-        text += f"; the optimum sink reaches {objective.shown(sink.value)}"
+        text += f"; the optimum sink{_many(sink)} reaches {objective.shown(sink.value)}"
         if first.value > 0:
             text += f", {sink.value / first.value:.3g} times as much"
     if tuned and mixed and mixed is first and tuned.value > 0:
         text += f"; it gains {100 * (1 - mixed.value / tuned.value):.3g} % over the best tuned mass damper"
     return text + "."
+
+
+def _many(rival: Rival) -> str:
+    return f" in {rival.count} parts" if rival.count > 1 else ""
 
 
 def _rows(name: str, errors: Sequence[float], sink: Sequence[float], tuned: Sequence[float]) -> str:

@@ -141,7 +141,9 @@ def is_grid(disturbances: Sequence[Disturbance]) -> bool:
     """Whether they differ in the frequency of the pipe alone, on both sides of the nominal one, and ascend."""
     if len(disturbances) < 2:
         return False
-    plain = all(replace(one, pipe_frequency=1.0) == Disturbance(lock_in=one.lock_in) for one in disturbances)
+    plain = all(
+        replace(one, pipe_frequency=1.0) == Disturbance(lock_in=one.lock_in, count=one.count) for one in disturbances
+    )
     return plain and list(disturbances) == sorted(disturbances)
 
 
@@ -168,7 +170,9 @@ def _joined(found: dict[Disturbance, dict[int, WorstCase]], objective: Objective
     at = max(grid, key=lambda one: max(mode.pipe_peak for mode in found[one].values()))
     parts = [(one, mode) for one in grid for mode in found[one].values()]
     motions = [replace(mode.motion, unverified=_named(one, mode.unverified)) for one, mode in parts]
-    nominal = next((tuple(found[one].values()) for one in grid if replace(one, lock_in=True) == Disturbance()), ())
+    nominal = next(
+        (tuple(found[one].values()) for one in grid if replace(one, lock_in=True, count=1) == Disturbance()), ()
+    )
     return Verification(
         value=float(objective.over_scatter(np.array([_value(found[one], objective) for one in grid]))),
         motion=joined(motions),

@@ -14,7 +14,7 @@ import numpy as np
 
 from frahm.attractors import WorstCase, joined
 from frahm.case import Case
-from frahm.design.absorber import DesignedAbsorber, parameters_text, with_design, without_first
+from frahm.design.absorber import DesignedAbsorber, parameters_text, without_designed
 from frahm.design.exact import ExcitedMode
 from frahm.design.hardware import Hardware
 from frahm.design.objective import Objective
@@ -38,6 +38,7 @@ class Found:
 
     best: Rival | None = None
     rivals: dict[str, Rival] = field(default_factory=dict)
+    by_count: list[Rival] = field(default_factory=list)  # the best of every family and number of absorbers
     lasting: dict[str, xr.Dataset] = field(default_factory=dict)
     table: dict[str, tuple[float, ...]] = field(default_factory=dict)
     table_doubts: dict[str, tuple[tuple[str, ...], ...]] = field(default_factory=dict)
@@ -77,19 +78,24 @@ class DesignWork:
     @functools.cached_property
     def bare(self) -> Verification | None:
         """The pipe without the absorber to be designed; None where nothing bounds its resonance."""
-        case = without_first(self.case)
+        case = self.without_designed
         if np.any(np.linalg.eigvalsh(build_system(case).damping) > 0):
             return self.verify(case)
         self.found.discarded.append("none: without damping nothing bounds the resonance of the pipe: not compared.")
         return None
 
+    @functools.cached_property
+    def without_designed(self) -> Case:
+        """The case without the absorbers to be designed; others stay."""
+        return without_designed(self.case, self.settings.counts[-1])
+
     def case_of(self, rival: Rival) -> Case:
         """The case with a device of the comparison."""
         if rival.name == "none":
-            return without_first(self.case)
+            return self.without_designed
         if rival.name == "case" or rival.design is None:
             return self.case
-        return with_design(self.case, rival.design)
+        return self.problem.case_with(rival.design)
 
     def verify(self, case: Case) -> Verification:
         """Value of the objective for a case, over all attractors."""
@@ -125,11 +131,10 @@ class DesignWork:
 
     def beyond(self, design: DesignedAbsorber, stroke: float) -> str:
         """Which limit the stroke [m] of all attractors, force margin included, breaks; empty if none."""
-        limits, host = self.limits, self.case.pipe.mass
+        limits = self.limits
         if stroke > limits.stroke * _STROKE_SLACK:
             return f"its stroke is {stroke:.4g} m, force margin included, beyond {limits.stroke:.4g} m"
-        row = np.array([[0.0, host * design.linear, host * design.kappa, 0.0, 0.0]])
-        if limits.filling(row, np.array([stroke]))[0] > _STROKE_SLACK:
+        if limits.filling(self.problem.row(design)[None], np.array([stroke]))[0] > _STROKE_SLACK:
             return f"coil springs for its stroke of {stroke:.4g} m do not fit into their length"
         return ""
 
@@ -143,10 +148,15 @@ class DesignWork:
             )
 
 
-def rival_of(name: str, design: DesignedAbsorber | None, checked: Verification, force_margin: float) -> Rival:
+def rival_of(
+    name: str, design: DesignedAbsorber | None, checked: Verification, force_margin: float, count: int | None = None
+) -> Rival:
     """A device as far as the search has come; the step `whole_comparison` adds what the comparison needs."""
+    number = count if count is not None else (0 if design is None else design.count)
     nominal = joined([part.motion for part in checked.nominal]) if checked.nominal else checked.motion
-    return Rival(name, design, checked.value, nominal, checked.motion, checked.disturbance, float(force_margin))
+    return Rival(
+        name, design, checked.value, nominal, checked.motion, checked.disturbance, float(force_margin), count=number
+    )
 
 
 def in_threads(function: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:

@@ -90,10 +90,6 @@ def _write_netcdf(dataset: xr.Dataset, path: Path) -> list[Path]:
     return [path]
 
 
-def _read_netcdf(path: Path) -> xr.Dataset:
-    return netcdf_dataset(path)
-
-
 def _write_json(dataset: xr.Dataset, path: Path) -> list[Path]:
     layout = layout_of(dataset)
     for name, facts in layout["variables"].items():
@@ -124,4 +120,4 @@ def _strict(values: np.ndarray) -> Any:
 
 
 _WRITERS = {".nc": _write_netcdf, ".csv": write_csv, ".mat": write_mat, ".json": _write_json}
-_READERS = {".nc": _read_netcdf, ".csv": read_csv, ".mat": read_mat, ".json": _read_json}
+_READERS = {".nc": netcdf_dataset, ".csv": read_csv, ".mat": read_mat, ".json": _read_json}

@@ -293,7 +293,7 @@ def residual_and_jacobian(pb, H, odd, W, X, co, si, R, J):
         add_slopes(pb, e, first, step, count, p, J)
         if pb.rates:
             add_rates(pb, e, first, step, count, W, q, J)
-            _add_rate_by_frequency(pb, e, first, step, count, W, u, q, J, n)
+            _add_rate_by_frequency(pb, e, first, step, count, u, q, J, n)
     if not odd:
         for i in range(r):  # harmonic 0 is real
             row = 2 * i + 1
@@ -306,7 +306,6 @@ def residual_and_jacobian(pb, H, odd, W, X, co, si, R, J):
 @kernel
 def add_slopes(pb, e, first, step, count, p, J):
     """Add d G_k = sum_l p_{k-l} du_l + p_{k+l} conj(du_l) of one element to the Jacobian."""
-    r = pb.M11.shape[0]
     for mk in range(count):
         k = first + mk * step
         for ml in range(count):
@@ -318,41 +317,36 @@ def add_slopes(pb, e, first, step, count, p, J):
                 plus = minus
             elif k == 0:  # the real mean of the force
                 minus, plus = 0.5 * minus, 0.5 * plus
-            rr, ri = minus.real + plus.real, -minus.imag + plus.imag
-            ir, ii = minus.imag + plus.imag, minus.real - plus.real
-            for i in range(r):
-                for j in range(r):
-                    weight = pb.directions[i, e] * pb.directions[j, e]
-                    if weight == 0.0:
-                        continue
-                    row, column = 2 * (mk * r + i), 2 * (ml * r + j)
-                    J[row, column] += weight * rr
-                    J[row, column + 1] += weight * ri
-                    J[row + 1, column] += weight * ir
-                    J[row + 1, column + 1] += weight * ii
+            _add_block(pb, e, mk, ml, minus, plus, J)
 
 
 @kernel
 def add_rates(pb, e, first, step, count, W, q, J):
     """Add d G_k = sum_l q_{k-l} dw_l + q_{k+l} conj(dw_l), dw_l = il Omega du_l, of one element to the Jacobian."""
-    r = pb.M11.shape[0]
     for mk in range(count):
         k = first + mk * step
         for ml in range(count):
             m = first + ml * step
             minus, plus = _rate_entries(k, m, W, q)
-            rr, ri = minus.real + plus.real, -minus.imag + plus.imag
-            ir, ii = minus.imag + plus.imag, minus.real - plus.real
-            for i in range(r):
-                for j in range(r):
-                    weight = pb.directions[i, e] * pb.directions[j, e]
-                    if weight == 0.0:
-                        continue
-                    row, column = 2 * (mk * r + i), 2 * (ml * r + j)
-                    J[row, column] += weight * rr
-                    J[row, column + 1] += weight * ri
-                    J[row + 1, column] += weight * ir
-                    J[row + 1, column + 1] += weight * ii
+            _add_block(pb, e, mk, ml, minus, plus, J)
+
+
+@kernel
+def _add_block(pb, e, mk, ml, minus, plus, J):
+    """Add d G = minus du + plus conj(du) of one element to the block of two harmonics."""
+    r = pb.M11.shape[0]
+    rr, ri = minus.real + plus.real, -minus.imag + plus.imag
+    ir, ii = minus.imag + plus.imag, minus.real - plus.real
+    for i in range(r):
+        for j in range(r):
+            weight = pb.directions[i, e] * pb.directions[j, e]
+            if weight == 0.0:
+                continue
+            row, column = 2 * (mk * r + i), 2 * (ml * r + j)
+            J[row, column] += weight * rr
+            J[row, column + 1] += weight * ri
+            J[row + 1, column] += weight * ir
+            J[row + 1, column + 1] += weight * ii
 
 
 @kernel
@@ -364,7 +358,7 @@ def _rate_entries(k, m, W, q):
 
 
 @kernel
-def _add_rate_by_frequency(pb, e, first, step, count, W, u, q, J, n):
+def _add_rate_by_frequency(pb, e, first, step, count, u, q, J, n):
     """Add the derivative of G_k by Omega at fixed displacements to column n of the Jacobian."""
     r = pb.M11.shape[0]
     for mk in range(count):

@@ -10,13 +10,10 @@ from frahm.compiled import kernel, separate_kernel
 from frahm.continuation.dense import factorise, solve_factorised
 from frahm.harmonic_balance.kernels import (
     fourier_tables,
-    harmonic_count,
     residual_and_jacobian,
     sample_count,
     unknowns,
 )
-
-MOST_UNKNOWNS = 512
 
 
 @separate_kernel
@@ -128,9 +125,3 @@ def solve_at(pb, odd, W, X, H, H_most, goal, iterations):
             return done, H, truncation
         resize(pb, H, H + 2 * step, odd, y)
         H += 2 * step
-
-
-@kernel
-def harmonics_kept(H, odd):
-    """Number of harmonics, for callers that size arrays."""
-    return harmonic_count(H, odd)

@@ -9,7 +9,7 @@ import numpy as np
 from frahm.compiled import kernel, separate_kernel
 from frahm.harmonic_balance.floquet import map_multipliers
 from frahm.harmonic_balance.kernels import fourier_tables, harmonics_of, output_harmonic, sample_count, unknowns
-from frahm.harmonic_balance.newton import correct, resize, tangent
+from frahm.harmonic_balance.newton import correct, tangent
 
 _LOCATED = 1e-6  # of the frequency: half-width up to which a point where branches cross counts as located
 
@@ -237,9 +237,3 @@ def same_harmonics(pb, odd, y, t, H, H_new, y_new, t_new):
     y_new[:] = 0.0
     t_new[:] = 0.0
     _copy(pb, odd, y, t, H, H_new, y_new, t_new)
-
-
-@kernel
-def shrink(pb, H, H_new, odd, y):
-    """Change the number of harmonics of a stored point in place."""
-    resize(pb, H, H_new, odd, y)

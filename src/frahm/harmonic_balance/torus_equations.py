@@ -59,7 +59,7 @@ class TorusEquations(Equations):
         v, w = vg[:-1], wg[:-1] * weight
         gradient = np.append(
             self._by_orbit(orbit, nu, v, w),
-            [-w @ self._by_axis(orbit, change, nu, parts) @ v for change in orbit.changes],
+            [-w @ self._by_axis(orbit, change, nu) @ v for change in orbit.changes],
         )
         by_exponent = self._diagonal([1j * dS for _, dS in parts])
         if orbit.problem.rates:
@@ -119,9 +119,7 @@ class TorusEquations(Equations):
             out[0, :, 1] = 0.0
         return out.ravel()
 
-    def _by_axis(
-        self, orbit: Linearisation, change: Change, nu: float, parts: list[tuple[Complexes, Complexes]]
-    ) -> Complexes:
+    def _by_axis(self, orbit: Linearisation, change: Change, nu: float) -> Complexes:
         """Derivative of Hill's matrix by one axis."""
         out = self._diagonal([change.block(1j * (nu + k * orbit.W), k) for k in self.waves])
         if change.law is not None:

@@ -11,7 +11,7 @@ from frahm.errors import check_number
 from frahm.loads.correlation import correlation_length
 from frahm.loads.eurocode import METHOD_1, METHOD_2, eurocode_amplitude, spectral_amplitude
 from frahm.loads.mode_factors import ModeFactors, mode_factors
-from frahm.loads.reynolds import published_curve, strouhal_curve
+from frahm.loads.reynolds import reynolds_curve, strouhal_curve
 from frahm.loads.similarity import lock_in_band, resonant_shedding, scruton_number, skop_griffin_number
 from frahm.loads.vortex import reynolds_number
 from frahm.loads.wake_oscillator import WakeOscillator
@@ -157,7 +157,7 @@ def _forced(case: Case) -> AmplitudeEstimate:
 
 
 def _method_1(factors: ModeFactors, Ks: float, St: float, Re: float) -> AmplitudeEstimate:
-    lift = float(published_curve("en1991", LIFT_CURVES).value(Re))
+    lift = float(reynolds_curve("en1991", LIFT_CURVES).value(Re))
     if math.isnan(lift):
         return AmplitudeEstimate(_NAMES[0], math.nan, f"c_lat,0 is not given at Re = {Re:.3g}.", *METHOD_1)
     known = factors.antinodes

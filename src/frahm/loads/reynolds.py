@@ -63,20 +63,16 @@ class ReynoldsCurve:
 
 def strouhal_curve(wind: Wind) -> ReynoldsCurve:
     """Strouhal number of a wind over the Reynolds number."""
-    return _curve(wind.strouhal, STROUHAL_CURVES)
+    return reynolds_curve(wind.strouhal, STROUHAL_CURVES)
 
 
 def lift_curve(wind: Wind) -> ReynoldsCurve:
     """Amplitude of the lift coefficient of a wind over the Reynolds number."""
-    return _curve(wind.lift_coefficient, LIFT_CURVES)
+    return reynolds_curve(wind.lift_coefficient, LIFT_CURVES)
 
 
-def published_curve(name: str, curves: Mapping[str, PublishedCurve]) -> ReynoldsCurve:
-    """One of the published curves by its name."""
-    return _curve(name, curves)
-
-
-def _curve(value: Coefficient, curves: Mapping[str, PublishedCurve]) -> ReynoldsCurve:
+def reynolds_curve(value: Coefficient, curves: Mapping[str, PublishedCurve]) -> ReynoldsCurve:
+    """The curve of a coefficient: a number, a table, or one of the published curves by its name."""
     pairs, standing, source = value, "of the case", "given in the case"
     if isinstance(value, str):
         pairs, standing, source = curves[value].pairs, curves[value].standing, curves[value].source

@@ -77,7 +77,7 @@ def response_figure(
             panel.set(xlim=window, xlabel=DETUNING_LABEL, ylabel=label)
             panel.set_ylim(bottom=0)
         name_panels(axes, (f"pipe, {title}", "relative to the pipe"))
-        legend_below(figure, 4, handles=_response_handles(paper, averaged, motions), columnspacing=1.4)
+        legend_below(figure, 4, handles=_response_handles(paper, motions), columnspacing=1.4)
         return figure
 
 
@@ -142,7 +142,7 @@ def _mark_special_points(panel: Axes, curve: ResponseCurve, quantity: str) -> No
         panel.plot([p.detuning for p in points], peaks, linestyle="none", zorder=5, **look)
 
 
-def _response_handles(paper: ResponseCurve, averaged: ResponseCurve, motions: Motions) -> list[Line2D]:
+def _response_handles(paper: ResponseCurve, motions: Motions) -> list[Line2D]:
     kinds = {point.kind for point in paper.special_points}
     handles = [_line("slow flow of the paper, stable", color=BLUE)]
     if not np.all(paper.stable):

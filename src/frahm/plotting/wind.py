@@ -1,4 +1,4 @@
-"""Figures about the wind: the lock-in curve of the wake oscillator, and the pipe in gusts."""
+"""Figures of the pipe in gusts."""
 
 from __future__ import annotations
 
@@ -9,40 +9,13 @@ import numpy as np
 from frahm.arrays import Floats
 from frahm.plotting.interactive import plot_layout, single
 from frahm.plotting.plain import PlainFigure
-from frahm.plotting.style import BARE, INK, PIPE, SKY, legend_below, new_figure
+from frahm.plotting.style import BARE, PIPE, SKY, legend_below, new_figure
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
 _BARE_LABEL, _SINK_LABEL, _STEADY_LABEL = "without absorbers", "with absorbers", "steady resonance, without absorbers"
-
-
-def lock_in_figure(curve: xr.Dataset) -> Figure:
-    """Largest pipe motion over the wind speed, rising and falling.
-
-    Parameters
-    ----------
-    curve : Dataset
-        From `frahm.WakeResponse.to_dataset`.
-    """
-    figure = new_figure(160, 90)
-    axes = figure.subplots()
-    speed, looks = curve["speed"].values, []
-    if "relative_peak" in curve:
-        looks.append(("pipe_peak", PIPE, _SINK_LABEL))
-    looks.append(("bare_pipe_peak", BARE, _BARE_LABEL))
-    for name, colour, label in looks:
-        up, down = curve[name].values
-        axes.plot(speed, up, "-", color=colour, label=f"{label}, wind rising")
-        axes.plot(speed, down, linestyle=(0, (4.0, 2.0)), color=colour, label=f"{label}, wind falling")
-        open_ends = curve[name.replace("pipe_peak", "settled")].values == 0
-        if open_ends.any():
-            at = np.broadcast_to(speed, open_ends.shape)[open_ends]
-            axes.plot(at, curve[name].values[open_ends], "x", color=INK, markersize=4, label=f"{label}, not settled")
-    axes.set(xlabel="wind speed [m/s]", ylabel="largest pipe displacement [m]", ylim=(0, None))
-    legend_below(figure, 2)
-    return figure
 
 
 def gusts_figure(motion: xr.Dataset) -> Figure:

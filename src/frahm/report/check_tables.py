@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from frahm.analysis import CaseAnalysis
+from frahm.plotting.lines import MM
+from frahm.report.columns import Column, heads, of, rows_of
 from frahm.report.numbers import number
 from frahm.report.places import over_wind, place_head
 
@@ -20,8 +20,8 @@ _SETTINGS = {
 
 
 def comparison_head(analysis: CaseAnalysis) -> list[str]:
-    """Column heads of `comparison_rows`."""
-    return [place_head(analysis), *(head for head, _, _ in _comparisons(analysis))]
+    """Head of `comparison_rows`."""
+    return heads(_comparisons(analysis))
 
 
 def comparison_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
@@ -29,22 +29,23 @@ def comparison_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     if "cross_check" not in analysis.data:
         return []
     table = analysis.data["cross_check"].sortby("detuning")
-    columns = [[form(float(value)) for value in table[name].values] for _, name, form in _comparisons(analysis)]
-    places = table["wind_speed" if over_wind(analysis) else "detuning"].values
-    return list(zip([number(float(place)) for place in places], *columns, strict=True))
+    records = [{str(name): float(table[name].values[i]) for name in table} for i in range(len(table["detuning"]))]
+    return rows_of(_comparisons(analysis), records)
 
 
-def _comparisons(analysis: CaseAnalysis) -> list[tuple[str, str, Callable[[float], str]]]:
-    """Head, variable and form of every column that is there."""
-    columns: list[tuple[str, str, Callable[[float], str]]] = []
+def _comparisons(analysis: CaseAnalysis) -> list[Column]:
+    """The columns that are there."""
+    place = "wind_speed" if over_wind(analysis) else "detuning"
+    columns = {place: Column(place_head(analysis), of(place), number)}
     for name, text in (("pipe", "Pipe"), ("relative", "Stroke")):
-        columns += [
-            (f"{text}, harmonic balance [mm]", f"{name}_peak", lambda value: number(1e3 * value, 6)),
-            ("Off integration by", f"{name}_error", lambda value: f"{value:+.1e}"),
-            (f"{text}, slow flow [mm]", f"slow_{name}_peak", lambda value: number(1e3 * value)),
-            ("Off by", f"slow_{name}_error", lambda value: f"{value:+.2%}"),
-        ]
-    return [column for column in columns if column[1] in analysis.data["cross_check"]]
+        exact, slow, error, slow_error = f"{name}_peak", f"slow_{name}_peak", f"{name}_error", f"slow_{name}_error"
+        columns |= {
+            exact: Column(f"{text}, harmonic balance [mm]", of(exact), lambda value: number(MM * value, 6)),
+            error: Column("Off integration by", of(error), lambda value: f"{value:+.1e}"),
+            slow: Column(f"{text}, slow flow [mm]", of(slow), lambda value: number(MM * value)),
+            slow_error: Column("Off by", of(slow_error), lambda value: f"{value:+.2%}"),
+        }
+    return [column for name, column in columns.items() if name in analysis.data["cross_check"]]
 
 
 def check_rows(analysis: CaseAnalysis) -> list[tuple[str, str, str, str]]:

@@ -10,11 +10,8 @@ from frahm import readable
 from frahm.assessment import headline
 from frahm.design import SIMPLEST_FIRST
 from frahm.plotting.decision import DEVICES
+from frahm.report.columns import Column, heads, of, rows_of
 
-DEVICE_HEAD = [
-    "Device", "Peak [mm]", "At", "Motion", "A/D", "Stress range [MPa]", "Damage × factor", "Life", "Stroke [mm]",
-    "Limit used most", "Verified",
-]  # fmt: skip
 RANKING_HEAD = ["Frequency of the pipe off by", "Best first: worst pipe peak [mm]"]
 _STATUS = {"pass": "pass", "fail": "fail", "not verified": "unverified"}
 _BAR = 1.5  # utilisation that fills the bar
@@ -45,18 +42,13 @@ def limit_rows(acceptance: Mapping[str, Any]) -> list[tuple[str, str, str, float
 
 def device_rows(decision: Mapping[str, Any]) -> list[tuple[str, ...]]:
     """A row a device; what is unverified names its reason."""
-    return [_device(row, decision.get("remarks", {})) for row in decision["rows"]]
+    remarks = decision.get("remarks", {})
+    return rows_of(_DEVICES, [row | {"remark": remarks.get(row["name"])} for row in decision["rows"]])
 
 
-def _device(row: Mapping[str, Any], remarks: Mapping[str, str]) -> tuple[str, ...]:
+def _device(row: Mapping[str, Any]) -> str:
     name = DEVICES[row["name"]]
-    remark = remarks.get(row["name"])
-    return (
-        f"{name} ({remark})" if remark else name, readable.in_mm(row["pipe_peak"]), _place(row),
-        readable.motion(row["kind"]), _plain(row["amplitude_ratio"]), readable.in_mpa(row["stress_range"]),
-        _plain(row["damage_times_factor"]), _life(row), readable.in_mm(row["stroke"]), _used(row),
-        "yes" if row["verified"] else "no: " + " ".join(row["unverified"]),
-    )  # fmt: skip
+    return f"{name} ({row['remark']})" if row["remark"] else name
 
 
 def _place(row: Mapping[str, Any]) -> str:
@@ -85,6 +77,22 @@ def _used(row: Mapping[str, Any]) -> str:
 
 def _plain(value: float | None) -> str:
     return "-" if value is None or math.isnan(value) else f"{value:.3g}"
+
+
+_DEVICES = [
+    Column("Device", _device),
+    Column("Peak [mm]", of("pipe_peak"), readable.in_mm),
+    Column("At", _place),
+    Column("Motion", of("kind"), readable.motion),
+    Column("A/D", of("amplitude_ratio"), _plain),
+    Column("Stress range [MPa]", of("stress_range"), readable.in_mpa),
+    Column("Damage × factor", of("damage_times_factor"), _plain),
+    Column("Life", _life),
+    Column("Stroke [mm]", of("stroke"), readable.in_mm),
+    Column("Limit used most", _used),
+    Column("Verified", lambda row: "yes" if row["verified"] else "no: " + " ".join(row["unverified"])),
+]
+DEVICE_HEAD = heads(_DEVICES)
 
 
 def ranking_rows(errors: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,13 @@ from frahm import readable
 from frahm.analysis import FORCE_MARGIN, defaulted_fields, provenance
 from frahm.analysis.decision import together
 from frahm.case import Case, Design, field_table, field_values
-from frahm.design import FAR, DesignStudy, Objective, Rival, design_summary
+from frahm.design import FAR, DesignedAbsorber, DesignStudy, Objective, Rival, design_summary
 from frahm.files import write_text
 from frahm.loads import lock_in_band, resonant_shedding, vortex_shedding
 from frahm.plotting.decision import DEVICES, Marks
 from frahm.plotting.design_figures import save_design_figures
 from frahm.report import decision
+from frahm.report.columns import Column, heads, rows_of, yes_or_no
 from frahm.report.document import document_rows
 from frahm.report.environment import template
 from frahm.report.input_tables import input_rows
@@ -24,6 +26,12 @@ from frahm.report.numbers import number
 from frahm.report.references import reference_rows
 from frahm.report.report import REPORT_FILE, figures_folder, image_address
 from frahm.response import frequency_response
+
+_PARAMETERS = {"ρ₂": "rho2", "linear [1/s²]": "linear", "κ [1/(m² s²)]": "kappa", "ξ₂ [1/s]": "xi2"}
+_ROPES = {  # the real competitor, which this program does not compute
+    "Device": "helical ropes", "Worst pipe peak [mm]": "not computed", "Stroke [mm]": "0",
+    "Rests on": "experience: three 25 mm ropes, 120° apart, pitch 1 m, cured Statfjord A",
+}  # fmt: skip
 
 
 def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
@@ -45,23 +53,24 @@ def write_design_report(study: DesignStudy, folder: str | Path) -> Path:
 
 def render_design_report(study: DesignStudy, images: dict[str, str]) -> str:
     """The report as HTML text; `images` are addresses of the figures by name."""
-    objective, searched = study.objective, FAR * study.settings.force_margin
+    objective = study.objective
+    compared = _comparison(objective, FAR * study.settings.force_margin)
     return template("design.html.jinja").render(
         study=study,
         **_head(study),
         asked=asked_rows(study),
-        comparison_head=comparison_head(objective),
-        comparison=[*(comparison_row(rival, objective, searched) for rival in study.comparison), ropes_row(objective)],
+        comparison_head=heads(compared),
+        comparison=[
+            *rows_of(compared, study.comparison), tuple(_ROPES.get(head, "-") for head in heads(compared)),
+        ],
+        by_count_head=heads(_by_count(objective)),
+        by_count=rows_of(_by_count(objective), study.by_count) if len(study.settings.counts) > 1 else [],
         error_head=["Device", *(f"{100 * (r - 1):+.3g} %" if r != 1 else "0 %" for r in study.errors)],
         error_rows=error_rows(study),
-        trade_off=[
-            (f"{p.force_margin:g}", number(p.design.linear), number(p.design.kappa, 5), number(p.design.xi2),
-             _value(p.value, objective), "yes" if p.verified else "no")
-            for p in study.trade_off
-        ],
+        trade_off_head=heads(_trade_off(objective)),
+        trade_off=rows_of(_trade_off(objective), study.trade_off),
         hardware=hardware_rows(study),
         sensitivities=sensitivity_rows(study),
-        objective_title=_titled(objective),
         least_stroke=least_stroke(study),
         plots={},
         inputs=input_rows(study.case, defaulted_fields(study.case), study.case.typed),
@@ -122,7 +131,8 @@ def missed_below(study: DesignStudy) -> str:
 
 def least_stroke(study: DesignStudy) -> str:
     """Motion of the mass below which no absorber balances the force, at the pipe's frequency."""
-    ratio = study.best.design.rho2 if study.best.design else math.nan
+    design = study.best.design
+    ratio = sum(one.rho2 for one in design.absorbers) if design else math.nan
     case = study.case
     lift = resonant_shedding(case).lift * float(case.pipe.modal.lift_lengths[0]) / case.pipe.length
     return readable.length(lift / (ratio * case.pipe.mass * case.pipe.frequency**2))
@@ -144,36 +154,61 @@ def asked_rows(study: DesignStudy) -> list[tuple[str, ...]]:
     return rows
 
 
-def comparison_head(objective: Objective) -> list[str]:
-    """Head of the comparison."""
-    more = [] if _is_peak(objective) else [_titled(objective)]
+def _comparison(objective: Objective, searched: float) -> list[Column]:
+    """Columns of the devices compared; force margins were searched up to a factor."""
+    aimed = Column(_titled(objective), lambda rival: _value(rival.value, objective))
     return [
-        "Device", "ρ₂", "linear [1/s²]", "κ [1/(m² s²)]", "ξ₂ [1/s]", *more, "Worst pipe peak [mm]", "Motion",
-        "Stroke [mm]", "Force margin", "Rests on", "Verified",
-    ]  # fmt: skip
+        Column("Device", _device),
+        *(Column(head, _of_design(name)) for head, name in _PARAMETERS.items()),
+        *(() if _is_peak(objective) else (aimed,)),
+        Column("Worst pipe peak [mm]", lambda rival: rival.worst_pipe_peak, readable.in_mm),
+        Column("Motion", lambda rival: rival.kind, readable.motion),
+        Column("Stroke [mm]", _stroke),
+        Column("Force margin", lambda rival: _margin(rival.force_margin, searched)),
+        Column("Rests on", _basis),
+        Column("Verified", lambda rival: rival.verified, yes_or_no),
+    ]
 
 
-def comparison_row(rival: Rival, objective: Objective, searched: float) -> tuple[str, ...]:
-    """Name, parameters, worst peaks, force margin as far as it was searched, what the numbers rest on."""
-    design = rival.design
-    parameters: tuple[Any, ...] = ("-",) * 4
-    name = DEVICES[rival.name]
+def _device(rival: Rival) -> str:
+    design, name = rival.design, DEVICES[rival.name]
     if design is not None:
-        parameters = tuple(number(getattr(design, name), 4) for name in ("rho2", "linear", "kappa", "xi2"))
+        name += f", {design.count} absorbers" if design.count > 1 else ""
         name += f", fifth power {number(design.quintic)} 1/(m⁴ s²)" if design.quintic else ""
         name += f", at {number(design.position)} m" if design.position is not None else ""
-    more = () if _is_peak(objective) else (_value(rival.value, objective),)
-    return (
-        name, *parameters, *more, readable.in_mm(rival.worst_pipe_peak), readable.motion(rival.kind), _stroke(rival),
-        _margin(rival.force_margin, searched), _basis(rival), "yes" if rival.verified else "no",
-    )  # fmt: skip
+    return name
 
 
-def ropes_row(objective: Objective) -> tuple[str, ...]:
-    """The real competitor, which this program does not compute."""
-    more = () if _is_peak(objective) else ("-",)
-    rests = "experience: three 25 mm ropes, 120° apart, pitch 1 m, cured Statfjord A"
-    return ("helical ropes", *("-",) * 4, *more, "not computed", "-", "0", "-", rests, "-")
+def _of_design(name: str) -> Callable[[Rival], str]:
+    return lambda rival: "-" if rival.design is None else _each(rival.design, name)
+
+
+def _trade_off(objective: Objective) -> list[Column]:
+    """Columns of the designs for several force margins."""
+    return [
+        Column("Force", lambda point: f"{point.force_margin:g}"),
+        Column("linear [1/s²]", lambda point: _each(point.design, "linear")),
+        Column("κ [1/(m² s²)]", lambda point: _each(point.design, "kappa", 5)),
+        Column("ξ₂ [1/s]", lambda point: _each(point.design, "xi2")),
+        Column(_titled(objective), lambda point: _value(point.value, objective)),
+        Column("Verified", lambda point: point.verified, yes_or_no),
+    ]
+
+
+def _by_count(objective: Objective) -> list[Column]:
+    """Columns of the best designs of every family and number of absorbers."""
+    return [
+        Column("Device", lambda rival: DEVICES[rival.name]),
+        Column("Absorbers", lambda rival: str(rival.count)),
+        *(Column(head, _of_design(name)) for head, name in _PARAMETERS.items()),
+        Column(_titled(objective), lambda rival: _value(rival.value, objective)),
+        Column("Verified", lambda rival: rival.verified, yes_or_no),
+    ]
+
+
+def _each(design: DesignedAbsorber, name: str, digits: int = 4) -> str:
+    """A parameter of every absorber."""
+    return " · ".join(number(getattr(one, name), digits) for one in design.absorbers)
 
 
 def _value(value: float, objective: Objective) -> str:

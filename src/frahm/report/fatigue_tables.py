@@ -7,13 +7,10 @@ from typing import Any
 
 from frahm import readable
 from frahm.analysis import CaseAnalysis
+from frahm.report.columns import Column, heads, of, rows_of
 from frahm.report.numbers import number
 from frahm.units import MPA
 
-BIN_HEAD = [
-    "Wind [m/s]", "Frequency [Hz]", "Share of the time", "Stress range with [MPa]", "without [MPa]", "Motion",
-    "Attractors", "Damage with", "weighted", "without",
-]  # fmt: skip
 _CASE, _COMPUTED = "given in the case", "computed"
 
 
@@ -72,19 +69,8 @@ def bin_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
     data = analysis.data["fatigue"]
     kinds = data["kind"].attrs["kinds"].split(", ")
     columns: dict[str, Any] = {str(name): data[name].values for name in data}
-    rows: list[tuple[str, ...]] = []
-    for i, code in enumerate(columns["kind"]):
-        rows.append(
-            (
-                f"{columns['speed_lower'][i]:.4g} … {columns['speed_upper'][i]:.4g}",
-                number(float(columns["frequency"][i]) / (2 * math.pi)),
-                number(float(columns["probability"][i]), 3), _stress(float(columns["stress_range_with"][i])),
-                _stress(float(columns["stress_range_without"][i])), readable.motion(kinds[code]),
-                str(int(columns["attractors"][i])), _damage(float(columns["damage_with"][i])),
-                _damage(float(columns["damage_with_weighted"][i])), _damage(float(columns["damage_without"][i])),
-            )
-        )  # fmt: skip
-    return rows
+    records = [{name: values[i].item() for name, values in columns.items()} for i in range(len(columns["kind"]))]
+    return rows_of(_BINS, [record | {"kind": kinds[record["kind"]]} for record in records])
 
 
 def _found(analysis: CaseAnalysis) -> dict[str, Any]:
@@ -101,3 +87,18 @@ def _life(value: float | None) -> str:
 
 def _stress(value: float | None) -> str:
     return "unbounded" if value is None or value == float("inf") else number(float(value) / MPA, 3)
+
+
+_BINS = [
+    Column("Wind [m/s]", lambda row: f"{row['speed_lower']:.4g} … {row['speed_upper']:.4g}"),
+    Column("Frequency [Hz]", lambda row: row["frequency"] / (2 * math.pi), number),
+    Column("Share of the time", of("probability"), lambda share: number(share, 3)),
+    Column("Stress range with [MPa]", of("stress_range_with"), _stress),
+    Column("without [MPa]", of("stress_range_without"), _stress),
+    Column("Motion", of("kind"), readable.motion),
+    Column("Attractors", of("attractors")),
+    Column("Damage with", of("damage_with"), _damage),
+    Column("weighted", of("damage_with_weighted"), _damage),
+    Column("without", of("damage_without"), _damage),
+]
+BIN_HEAD = heads(_BINS)

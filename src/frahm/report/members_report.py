@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +11,10 @@ from markupsafe import Markup
 
 from frahm.files import write_text
 from frahm.loads import amplitude_estimates, lock_in_band
+from frahm.plotting.lines import MM
 from frahm.plotting.members import save_member_figures
 from frahm.readable import YEAR
+from frahm.report.columns import Column, heads, of, rows_of
 from frahm.report.environment import kept_together, template, with_indices
 from frahm.report.numbers import number
 from frahm.report.references import Reference, reference_rows
@@ -21,16 +23,6 @@ from frahm.screening import FAIL, LOOK_CLOSER, NOT_JUDGED, PASS, MemberScreen, s
 
 Row = Mapping[str, Any]
 _MARKS = {FAIL: "fail", LOOK_CLOSER: "unverified", NOT_JUDGED: "unverified", PASS: "pass"}
-VERDICT_HEAD = ["Member", "Verdict", "Most used", "Why"]
-NUMBER_HEAD = [
-    "Member", "f [Hz]", "Critical wind [m/s]", "Lock-in [m/s]", "K\N{LATIN SUBSCRIPT SMALL LETTER S}", "Amplitude [mm]",
-    "A/D", "Estimates of A/D", "Stress range [MPa]", "Damage", "Damage if locked in",
-]  # fmt: skip
-INPUT_HEAD = [
-    "Member", "D [mm]", "t [mm]", "L [m]", "Ends", "Damping [%]", "Mass [kg/m]", "Winds [m/s]", "Modes", "Curve", "SCF",
-    "DFF", "Life [years]", "Row",
-]  # fmt: skip
-CRITERION_HEAD = ["Criterion", "It expects vibration for", "Yes", "No", "Not decided", "Standing"]
 _UNKNOWN = "-"
 
 
@@ -61,16 +53,17 @@ def render_members_report(screen: MemberScreen, images: dict[str, str]) -> str:
         mark=_MARKS[worst],
         images=images,
         plots={},
-        verdict_head=VERDICT_HEAD,
-        verdicts=[_verdict_row(row) for row in rows],
+        verdict_head=heads(_VERDICTS),
+        verdicts=rows_of(_VERDICTS, rows),
         left_out=[(row["name"] or _UNKNOWN, row["place"], row["why"]) for row in results["not_judged"]],
-        number_head=NUMBER_HEAD,
-        numbers=[_number_row(row) for row in rows],
-        input_head=INPUT_HEAD,
-        inputs=[_input_row(row) for row in rows],
-        criterion_head=CRITERION_HEAD,
-        criteria=_criterion_rows(rows),
-        other_modes=[_mode_row(row) for row in rows if row["mode"] != 1],
+        number_head=heads(_NUMBERS),
+        numbers=rows_of(_NUMBERS, rows),
+        input_head=heads(_INPUTS),
+        inputs=rows_of(_INPUTS, rows),
+        criterion_head=heads(_CRITERIA),
+        criteria=rows_of(_CRITERIA, _criteria(rows)),
+        mode_head=heads(_MODES),
+        other_modes=rows_of(_MODES, [row for row in rows if row["mode"] != 1]),
         assumptions=_assumption_rows(screen),
         references=_references(screen),
         provenance=[*results["provenance"]["versions"].items()],
@@ -81,23 +74,18 @@ def _status(word: str) -> Markup:
     return Markup('<span class="status {}">{}</span>').format(_MARKS[word], word)
 
 
-def _verdict_row(row: Row) -> tuple[Any, ...]:
+def _most_used(row: Row) -> str:
     used = row["largest_utilisation"]
     limit = max(row["utilisation"], key=lambda name: row["utilisation"][name] or 0.0, default="")
-    most = _UNKNOWN if used is None else f"{share(used)}, {limit.replace('_', ' ')}"
-    reasons = Markup("<br>").join(kept_together(reason) for reason in with_indices([tuple(row["reasons"])])[0])
-    return row["name"], _status(row["verdict"]), most, reasons
+    return _UNKNOWN if used is None else f"{share(used)}, {limit.replace('_', ' ')}"
 
 
-def _number_row(row: Row) -> tuple[str, ...]:
-    low, high = row["lock_in_band"]
-    stress = row["stress_range"]
-    return (
-        row["name"], number(row["natural_frequency_hz"], 3), number(row["critical_wind"], 3), _span(low, high),
-        number(row["scruton_number"], 3), _least(_times(row["pipe_peak"], 1e3), 0.01, 3),
-        _least(row["amplitude_ratio"], 1e-4, 3), _span(*row["estimates"]), _least(_times(stress, 1e-6), 0.1, 3),
-        _least(row["damage"], 1e-4, 2), _least(row["damage_locked_in"], 1e-4, 2) if row["excited"] else _UNKNOWN,
-    )  # fmt: skip
+def _reasons(reasons: Sequence[str]) -> Markup:
+    return Markup("<br>").join(kept_together(reason) for reason in with_indices([tuple(reasons)])[0])
+
+
+def _digits(digits: int) -> Callable[[Any], str]:
+    return lambda value: number(value, digits)
 
 
 def _least(value: float | None, least: float, digits: int) -> str:
@@ -114,38 +102,28 @@ def _span(low: float | None, high: float | None) -> str:
     return " \N{HORIZONTAL ELLIPSIS} ".join(ends)
 
 
-def _input_row(row: Row) -> tuple[str, ...]:
-    fatigue, climate = row["case"].get("fatigue"), row["case"].get("climate")
-    detail = ("curve", "stress_concentration", "design_fatigue_factor")
-    return (
-        row["name"], number(1e3 * row["diameter"], 4), number(1e3 * row["wall"], 4), number(row["length"], 4),
-        row["ends"], number(100 * row["damping_ratio"], 3), number(row["mass_per_length"], 4),
-        _span(*row["site_winds"]), str(row["mode_count"]),
-        *(_UNKNOWN if fatigue is None else number(fatigue.get(name, _UNKNOWN)) for name in detail),
-        _UNKNOWN if climate is None else number(climate["duration"] / YEAR), row["place"].rpartition(":")[2],
-    )  # fmt: skip
+def _of_fatigue(name: str) -> Callable[[Row], Any]:
+    """What the case of a member says of its fatigue."""
+    return lambda row: (row["case"].get("fatigue") or {}).get(name, _UNKNOWN)
 
 
-def _mode_row(row: Row) -> tuple[str, ...]:
-    own = next(one for one in row["modes"] if one["mode"] == row["mode"])
-    first = row["modes"][0]
-    return (
-        row["name"], str(row["mode"]), number(own["natural_frequency"] / (2 * math.pi), 3),
-        number(own["wind_speed"], 3), number(_times(own["pipe_peak"], 1e3), 3),
-        number(_times(first["pipe_peak"], 1e3), 3),
-    )  # fmt: skip
+def _life(row: Row) -> str:
+    climate = row["case"].get("climate")
+    return _UNKNOWN if climate is None else number(climate["duration"] / YEAR)
 
 
-def _criterion_rows(rows: list[Row]) -> list[tuple[str, ...]]:
-    """Every criterion, and how many members it expects to vibrate in the winds of their site."""
-    found: dict[str, tuple[Row, list[bool | None]]] = {}
+def _of_mode(name: str) -> Callable[[Row], Any]:
+    """A number of the mode that governs a member."""
+    return lambda row: next(one for one in row["modes"] if one["mode"] == row["mode"])[name]
+
+
+def _criteria(rows: list[Row]) -> list[dict[str, Any]]:
+    """Every criterion, and what it says of every member in the winds of its site."""
+    found: dict[str, dict[str, Any]] = {}
     for row in rows:
         for one in row["criteria"]:
-            found.setdefault(one["name"], (one, []))[1].append(one["expects_vibration"])
-    return [
-        (name, one["condition"], *(str(says.count(word)) for word in (True, False, None)), one["standing"])
-        for name, (one, says) in found.items()
-    ]
+            found.setdefault(one["name"], {**one, "says": []})["says"].append(one["expects_vibration"])
+    return list(found.values())
 
 
 def _assumption_rows(screen: MemberScreen) -> list[tuple[str, str, str]]:
@@ -169,3 +147,56 @@ def _references(screen: MemberScreen) -> list[Reference]:
     if any(member.ends.startswith("fixity") for member in screen.judged):
         found.append(("Fixity of an end", "Monforton and Wu, J. Struct. Div. ASCE 89 (1963)", "secondary"))
     return list(dict.fromkeys(found))
+
+
+_VERDICTS = [
+    Column("Member", of("name")),
+    Column("Verdict", of("verdict"), _status),
+    Column("Most used", _most_used),
+    Column("Why", of("reasons"), _reasons),
+]
+_NUMBERS = [
+    Column("Member", of("name")),
+    Column("f [Hz]", of("natural_frequency_hz"), _digits(3)),
+    Column("Critical wind [m/s]", of("critical_wind"), _digits(3)),
+    Column("Lock-in [m/s]", of("lock_in_band"), lambda band: _span(*band)),
+    Column("K\N{LATIN SUBSCRIPT SMALL LETTER S}", of("scruton_number"), _digits(3)),
+    Column("Amplitude [mm]", lambda row: _times(row["pipe_peak"], MM), lambda value: _least(value, 0.01, 3)),
+    Column("A/D", of("amplitude_ratio"), lambda value: _least(value, 1e-4, 3)),
+    Column("Estimates of A/D", of("estimates"), lambda ends: _span(*ends)),
+    Column("Stress range [MPa]", lambda row: _times(row["stress_range"], 1e-6), lambda value: _least(value, 0.1, 3)),
+    Column("Damage", of("damage"), lambda value: _least(value, 1e-4, 2)),
+    Column("Damage if locked in", lambda row: _least(row["damage_locked_in"], 1e-4, 2) if row["excited"] else _UNKNOWN),
+]
+_INPUTS = [
+    Column("Member", of("name")),
+    Column("D [mm]", lambda row: MM * row["diameter"], _digits(4)),
+    Column("t [mm]", lambda row: MM * row["wall"], _digits(4)),
+    Column("L [m]", of("length"), _digits(4)),
+    Column("Ends", of("ends")),
+    Column("Damping [%]", lambda row: 100 * row["damping_ratio"], _digits(3)),
+    Column("Mass [kg/m]", of("mass_per_length"), _digits(4)),
+    Column("Winds [m/s]", of("site_winds"), lambda winds: _span(*winds)),
+    Column("Modes", of("mode_count")),
+    Column("Curve", _of_fatigue("curve"), number),
+    Column("SCF", _of_fatigue("stress_concentration"), number),
+    Column("DFF", _of_fatigue("design_fatigue_factor"), number),
+    Column("Life [years]", _life),
+    Column("Row", lambda row: row["place"].rpartition(":")[2]),
+]
+_MODES = [
+    Column("Member", of("name")),
+    Column("Mode", of("mode")),
+    Column("f [Hz]", _of_mode("natural_frequency"), lambda omega: number(omega / (2 * math.pi), 3)),
+    Column("Wind [m/s]", _of_mode("wind_speed"), _digits(3)),
+    Column("Amplitude [mm]", _of_mode("pipe_peak"), lambda peak: number(_times(peak, MM), 3)),
+    Column("of the first mode [mm]", lambda row: number(_times(row["modes"][0]["pipe_peak"], MM), 3)),
+]
+_CRITERIA = [
+    Column("Criterion", of("name")),
+    Column("It expects vibration for", of("condition")),
+    Column("Yes", lambda one: one["says"].count(True)),
+    Column("No", lambda one: one["says"].count(False)),
+    Column("Not decided", lambda one: one["says"].count(None)),
+    Column("Standing", of("standing")),
+]

@@ -10,32 +10,41 @@ from frahm import readable
 from frahm.analysis import CaseAnalysis
 from frahm.errors import Outcome
 from frahm.loads import vortex_shedding
+from frahm.report.columns import Column, heads, of, rows_of, yes_or_no
 from frahm.report.places import at, place_head, where
-
-ATTRACTOR_HEAD = [
-    "Kind", "Pipe peak [mm]", "Smallest peak of a period [mm]", "Stroke [mm]", "Basin", "95 % interval", "From rest",
-]  # fmt: skip
 
 
 def motion_head(analysis: CaseAnalysis) -> list[str]:
-    """Column heads of `motion_rows`."""
-    head = [place_head(analysis), "Why here", "Kind", "Pipe peak [mm]", "Smallest peak [mm]", "Pipe rms [mm]"]
-    return [*head, *(("Stroke [mm]", "Without absorber [mm]", "Ratio") if analysis.results["has_absorber"] else ())]
+    """Head of `motion_rows`."""
+    return heads(_motions(analysis))
 
 
 def motion_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
-    """Place, reason, kind, largest and smallest peak and rms of every motion; stroke and what absorbers change."""
-    rows: list[tuple[str, ...]] = []
-    for motion in analysis.results.get("motions", []):
-        peak, bare = motion["pipe_peak"], motion["pipe_peak_without_absorber"]
-        ratio = peak / bare if peak is not None and bare else None
-        pipe = (peak, motion["pipe_envelope"][0], motion["pipe_rms"])
-        row = (where(motion), motion["reason"], _ended(motion), *map(readable.in_mm, pipe))
-        if analysis.results["has_absorber"]:
-            compared = f"{ratio:.3g}" if ratio is not None else "-"
-            row = (*row, readable.in_mm(motion["relative_peak"]), readable.in_mm(bare), compared)
-        rows.append(row)
-    return rows
+    """Every motion that was integrated."""
+    return rows_of(_motions(analysis), analysis.results.get("motions", []))
+
+
+def _motions(analysis: CaseAnalysis) -> list[Column]:
+    """Columns of the motions: what absorbers change only where there are some."""
+    columns = [
+        Column(place_head(analysis), where),
+        Column("Why here", of("reason")),
+        _KIND,
+        _PEAK,
+        Column("Smallest peak [mm]", lambda motion: motion["pipe_envelope"][0], readable.in_mm),
+        Column("Pipe rms [mm]", of("pipe_rms"), readable.in_mm),
+    ]
+    compared = [
+        _STROKE,
+        Column("Without absorber [mm]", of("pipe_peak_without_absorber"), readable.in_mm),
+        Column("Ratio", _ratio),
+    ]
+    return columns + (compared if analysis.results["has_absorber"] else [])
+
+
+def _ratio(motion: Mapping[str, Any]) -> str:
+    peak, bare = motion["pipe_peak"], motion["pipe_peak_without_absorber"]
+    return f"{peak / bare:.3g}" if peak is not None and bare else "-"
 
 
 def _ended(motion: Mapping[str, Any]) -> str:
@@ -46,36 +55,40 @@ def _ended(motion: Mapping[str, Any]) -> str:
 
 
 def attractor_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
-    """Kind, peaks, envelope, basin fraction with its interval, and whether the motion from rest ends there."""
-    return [
-        (
-            _ended(found),
-            *map(readable.in_mm, (found["pipe_peak"], found["pipe_envelope"][0], found["relative_peak"])),
-            *_basin(found),
-        )
-        for found in analysis.results.get("attractors", [])
-    ]  # fmt: skip
+    """Every attractor at the design wind."""
+    return rows_of(_ATTRACTORS, analysis.results.get("attractors", []))
+
+
+def coexisting_head(analysis: CaseAnalysis) -> list[str]:
+    """Head of `coexisting_rows`."""
+    return heads(_coexisting(analysis))
 
 
 def coexisting_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
-    """Place, kind, peaks and basin of every attractor at frequencies of the range that have several."""
-    return [
-        (
-            where(found), _ended(found),
-            *map(readable.in_mm, (found["pipe_peak"], found["relative_peak"])),
-            *_basin(found),
-        )
-        for found in analysis.results.get("coexisting", [])
-    ]  # fmt: skip
+    """Every attractor at frequencies of the range that have several."""
+    return rows_of(_coexisting(analysis), analysis.results.get("coexisting", []))
 
 
-def _basin(found: dict[str, Any]) -> tuple[str, str, str]:
+def _coexisting(analysis: CaseAnalysis) -> list[Column]:
+    return [Column(place_head(analysis), where), _KIND, _PEAK, _STROKE, *_BASIN]
+
+
+def _basin_interval(found: Mapping[str, Any]) -> str:
     low, high = found["basin_interval"]
-    return (
-        f"{100 * found['basin_fraction']:.3g} %",
-        f"{100 * low:.3g} … {100 * high:.3g} %",
-        "yes" if found["from_rest"] else "no",
-    )
+    return f"{100 * low:.3g} … {100 * high:.3g} %"
+
+
+_KIND = Column("Kind", _ended)
+_PEAK = Column("Pipe peak [mm]", of("pipe_peak"), readable.in_mm)
+_STROKE = Column("Stroke [mm]", of("relative_peak"), readable.in_mm)
+_BASIN = [
+    Column("Basin", of("basin_fraction"), lambda share: f"{100 * share:.3g} %"),
+    Column("95 % interval", _basin_interval),
+    Column("From rest", of("from_rest"), yes_or_no),
+]
+_SMALLEST = Column("Smallest peak of a period [mm]", lambda found: found["pipe_envelope"][0], readable.in_mm)
+_ATTRACTORS = [_KIND, _PEAK, _SMALLEST, _STROKE, *_BASIN]
+ATTRACTOR_HEAD = heads(_ATTRACTORS)
 
 
 def basin_caption(analysis: CaseAnalysis) -> str:

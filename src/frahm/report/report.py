@@ -29,7 +29,6 @@ from frahm.report import (
     fatigue_tables,
     input_tables,
     motion_tables,
-    places,
     response_tables,
     wind_tables,
 )
@@ -98,7 +97,6 @@ def render_report(analysis: CaseAnalysis, images: dict[str, str]) -> str:
         fatigue_tables=fatigue_tables,
         input_tables=input_tables,
         motion_tables=motion_tables,
-        places=places,
         response_tables=response_tables,
         wind_tables=wind_tables,
         views=views[:_MOST_MOTIONS],

@@ -7,36 +7,48 @@ from typing import Any
 
 from frahm import readable
 from frahm.analysis import CaseAnalysis
+from frahm.report.columns import Column, heads, of, rows_of, yes_or_no
 from frahm.report.numbers import number
 from frahm.report.places import place_head, span, where
 
 
 def special_point_head(analysis: CaseAnalysis) -> list[str]:
-    """Column heads of `special_point_rows`."""
-    place = place_head(analysis)
-    return ["Label", "Kind", place, "Frequency [Hz]", "Pipe peak [mm]", "Stroke [mm]", "Branch", "Status"]
+    """Head of `special_point_rows`."""
+    return heads(_special_points(analysis, set()))
 
 
 def special_point_rows(analysis: CaseAnalysis, method: str = "harmonic-balance") -> list[tuple[str, ...]]:
-    """Label, kind, place, frequency in Hz, pipe peak, stroke, branch, status of every special point."""
-    from frahm.plotting.lines import KIND_NAMES, special_marks
+    """Every special point of a method."""
+    from frahm.plotting.lines import special_marks
 
     name = {"harmonic-balance": "response", "slow-flow": "slow_flow"}[method]
     if name not in analysis.data:
         return []
     found = analysis.results["response"][method]
     detached = {b["number"] for b in found.get("branches", []) if b["detached"]}
+    marks = special_marks(analysis.data[name], "pipe_peak")
+    records = [{"label": mark.label} | point for mark, point in zip(marks, found["special_points"], strict=True)]
+    return rows_of(_special_points(analysis, detached), records)
+
+
+def _special_points(analysis: CaseAnalysis, detached: set[int]) -> list[Column]:
+    """Columns of special points; `detached` are numbers of branches."""
     return [
-        (
-            mark.label, KIND_NAMES[point["kind"]], where(point),
-            number(point["frequency"] / (2 * math.pi), 5),
-            readable.in_mm(point["pipe_peak"]), readable.in_mm(point["relative_peak"]),
-            f"{point['branch']}{' (detached)' if point['branch'] in detached else ''}", point["status"],
-        )
-        for mark, point in zip(
-            special_marks(analysis.data[name], "pipe_peak"), found["special_points"], strict=True
-        )
-    ]  # fmt: skip
+        Column("Label", of("label")),
+        Column("Kind", of("kind"), _kind_name),
+        Column(place_head(analysis), where),
+        Column("Frequency [Hz]", lambda point: point["frequency"] / (2 * math.pi), lambda value: number(value, 5)),
+        Column("Pipe peak [mm]", of("pipe_peak"), readable.in_mm),
+        Column("Stroke [mm]", of("relative_peak"), readable.in_mm),
+        Column("Branch", of("branch"), lambda branch: f"{branch}{' (detached)' if branch in detached else ''}"),
+        Column("Status", of("status")),
+    ]
+
+
+def _kind_name(kind: str) -> str:
+    from frahm.plotting.lines import KIND_NAMES
+
+    return KIND_NAMES[kind]
 
 
 def has_asymmetric(results: dict[str, Any]) -> bool:
@@ -45,18 +57,24 @@ def has_asymmetric(results: dict[str, Any]) -> bool:
     return any(branch["asymmetric"] for branch in branches)
 
 
+def branch_head(analysis: CaseAnalysis) -> list[str]:
+    """Head of `branch_rows`."""
+    return heads(_branches(analysis))
+
+
 def branch_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
-    """Number, kind, range of wind or detuning, largest pipe peak, stability of every branch of the exact response."""
+    """Every branch of the exact response."""
     found = analysis.results.get("response", {}).get("harmonic-balance", {})
+    return rows_of(_branches(analysis), found.get("branches", []))
+
+
+def _branches(analysis: CaseAnalysis) -> list[Column]:
     return [
-        (
-            str(branch["number"]),
-            " ".join(name for name in ("detached", "asymmetric") if branch[name]) or "main",
-            span(branch),
-            readable.in_mm(branch["pipe_peak_max"]),
-            "yes" if branch["stable_anywhere"] else "no",
-        )
-        for branch in found.get("branches", [])
+        Column("Branch", of("number")),
+        Column("Kind", lambda one: " ".join(name for name in ("detached", "asymmetric") if one[name]) or "main"),
+        Column(place_head(analysis), span),
+        Column("Largest pipe peak [mm]", of("pipe_peak_max"), readable.in_mm),
+        Column("Stable somewhere", of("stable_anywhere"), yes_or_no),
     ]
 
 
@@ -79,16 +97,21 @@ def _ranges_text(ranges: list[list[float]]) -> str:
 
 
 def other_mode_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
-    """Mode, natural frequency, range, peak, wind, stress range and standing of what else the wind excites."""
-    return [
-        (
-            str(row["mode"]), readable.frequency(row["natural_frequency"]), row["range"].split(",")[0],
-            readable.in_mm(row["pipe_peak"]),
-            readable.speed(row["wind_speed"]), readable.motion(row["kind"]), readable.in_mpa(row["stress_range"]),
-            "yes" if row["verified"] else "no: " + " ".join(row["unverified"]),
-        )
-        for row in analysis.results.get("other_modes", [])
-    ]  # fmt: skip
+    """Every other mode that the wind excites."""
+    return rows_of(_OTHER_MODES, analysis.results.get("other_modes", []))
+
+
+_OTHER_MODES = [
+    Column("Mode", of("mode")),
+    Column("Frequency", of("natural_frequency"), readable.frequency),
+    Column("Over", lambda row: row["range"].split(",")[0]),
+    Column("Peak [mm]", of("pipe_peak"), readable.in_mm),
+    Column("At", of("wind_speed"), readable.speed),
+    Column("Motion", of("kind"), readable.motion),
+    Column("Stress range [MPa]", of("stress_range"), readable.in_mpa),
+    Column("Verified", lambda row: "yes" if row["verified"] else "no: " + " ".join(row["unverified"])),
+]
+OTHER_MODE_HEAD = heads(_OTHER_MODES)
 
 
 def manifold_rows(analysis: CaseAnalysis) -> list[tuple[str, str, str]]:

@@ -6,6 +6,7 @@ import math
 
 from frahm import readable
 from frahm.analysis import CaseAnalysis
+from frahm.report.columns import Column, heads, of, rows_of
 from frahm.report.numbers import number
 
 
@@ -26,20 +27,13 @@ def similarity_rows(analysis: CaseAnalysis) -> list[tuple[str, str]]:
 
 
 def criterion_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
-    """Name, condition, verdict, evidence and standing of every onset criterion."""
-    words = {True: "yes", False: "no", None: "not decided"}
-    return [
-        (row["name"], row["condition"], words[row["expects_vibration"]], row["detail"], row["standing"])
-        for row in analysis.results["wind"]["criteria"]
-    ]
+    """Every onset criterion."""
+    return rows_of(_CRITERIA, analysis.results["wind"]["criteria"])
 
 
 def estimate_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
-    """Name, ratio, amplitude, what went in and standing of every amplitude estimate."""
-    return [
-        (row["name"], number(row["ratio"], 3), readable.in_mm(row["amplitude"]), row["detail"], row["standing"])
-        for row in analysis.results["wind"]["estimates"]
-    ]
+    """Every amplitude estimate."""
+    return rows_of(_ESTIMATES, analysis.results["wind"]["estimates"])
 
 
 def estimate_sentence(analysis: CaseAnalysis) -> str:
@@ -52,10 +46,9 @@ def estimate_sentence(analysis: CaseAnalysis) -> str:
     return f"The estimates span {low} … {high} mm; {used}."
 
 
-def load_cycle_row(analysis: CaseAnalysis) -> tuple[str, ...]:
-    """Name, number, what went in and standing of the number of load cycles at resonance."""
-    found = analysis.results["wind"]["load_cycles"]
-    return "EN 1991-1-4, load cycles at resonance", number(found["number"], 3), found["detail"], found["standing"]
+def load_cycle_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
+    """The number of load cycles at resonance."""
+    return rows_of(_LOAD_CYCLES, [analysis.results["wind"]["load_cycles"]])
 
 
 def unsteady_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
@@ -79,3 +72,29 @@ def unsteady_rows(analysis: CaseAnalysis) -> list[tuple[str, ...]]:
 
 def _percent(value: float | None) -> str:
     return "-" if value is None or not math.isfinite(value) else f"{value:.0%}"
+
+
+_EXPECTED = {True: "yes", False: "no", None: "not decided"}
+_CRITERIA = [
+    Column("Criterion", of("name")),
+    Column("Vibration is expected for", of("condition")),
+    Column("Expected here", of("expects_vibration"), _EXPECTED.__getitem__),
+    Column("Evidence", of("detail")),
+    Column("Standing", of("standing")),
+]
+CRITERION_HEAD = heads(_CRITERIA)
+_ESTIMATES = [
+    Column("Estimate", of("name")),
+    Column("A/D", of("ratio"), lambda ratio: number(ratio, 3)),
+    Column("A [mm]", of("amplitude"), readable.in_mm),
+    Column("From", of("detail")),
+    Column("Standing", of("standing")),
+]
+ESTIMATE_HEAD = heads(_ESTIMATES)
+_LOAD_CYCLES = [
+    Column("Number", lambda _: "EN 1991-1-4, load cycles at resonance"),
+    Column("N", of("number"), lambda count: number(count, 3)),
+    Column("From", of("detail")),
+    Column("Standing", of("standing")),
+]
+LOAD_CYCLE_HEAD = heads(_LOAD_CYCLES)

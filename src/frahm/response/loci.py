@@ -76,7 +76,7 @@ def bifurcation_curve(
     system = _nonlinear(case_or_system)
     check_choice("kind", kind, LOCUS_KINDS)
     axes = _checked_plane(system, plane)
-    limits = _checked_bounds(system, axes, bounds)
+    limits = _checked_bounds(axes, bounds)
     count = check_count("slices", slices, at_most=200)
     along = [axis for axis in axes if axis in _FREQUENCIES]
     doubts: list[str] = []
@@ -171,7 +171,7 @@ def _checked_plane(system: System, plane: tuple[str, str]) -> tuple[str, str]:
 
 
 def _checked_bounds(
-    system: System, axes: tuple[str, str], bounds: tuple[tuple[float, float], tuple[float, float]]
+    axes: tuple[str, str], bounds: tuple[tuple[float, float], tuple[float, float]]
 ) -> dict[str, tuple[float, float]]:
     try:
         first, second = bounds

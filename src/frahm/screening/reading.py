@@ -159,7 +159,7 @@ def _of_cells(cells: Cells) -> MemberTable:
         raise ParameterError("members", cells.source, "a table with at least one member below its head")
     if len(rows) > _MOST:
         raise ParameterError("members", f"{len(rows)} rows", f"at most {_MOST} members")
-    _check_names(cells.source, rows)
+    _check_names(rows)
     return MemberTable(cells.source, rows, tuple(head.column.name for head in heads), tuple(ignored))
 
 
@@ -233,7 +233,7 @@ def _check_complete(source: str, heads: Sequence[_Head], given: Sequence[str]) -
     raise ParameterError("members", source, f"a table with the column{'s' * (len(missing) > 1)} {words}", hint=hint)
 
 
-def _check_names(source: str, rows: Sequence[MemberRow]) -> None:
+def _check_names(rows: Sequence[MemberRow]) -> None:
     seen: dict[str, str] = {}
     for row in rows:
         if row.name and row.name in seen:

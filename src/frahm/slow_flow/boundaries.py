@@ -10,7 +10,7 @@ import numpy as np
 
 from frahm.arrays import Floats
 from frahm.compiled import kernel
-from frahm.continuation import zero_curves
+from frahm.continuation import bisected, zero_curves
 from frahm.errors import ParameterError, check_number, nearest
 from frahm.slow_flow.folds import double_root
 from frahm.slow_flow.kernels import characteristic, equilibria, hurwitz, linear_parts, pipe_amplitude
@@ -266,14 +266,8 @@ def _on_segment(test: Callable[[Floats, Floats], Floats], line: Floats, index: n
         return test(np.where(along_first, fixed, values), np.where(along_first, values, fixed))
 
     width = np.where(along_first, np.abs(b - a)[:, 1], np.abs(b - a)[:, 0]) + 1e-9 * (1 + np.abs(moving))
-    lo, hi = moving - width, moving + width
-    bracketed = across(lo) * across(hi) <= 0
-    f_lo = across(lo)
-    for _ in range(60):
-        middle = 0.5 * (lo + hi)
-        left = np.signbit(across(middle)) == np.signbit(f_lo)
-        lo, hi = np.where(left, middle, lo), np.where(left, hi, middle)
-    solved = np.where(bracketed & (fraction > 0) & (fraction < 1), 0.5 * (lo + hi), moving)
+    bracketed, zero = bisected(across, moving - width, moving + width)
+    solved = np.where(bracketed & (fraction > 0) & (fraction < 1), zero, moving)
     return np.column_stack([np.where(along_first, fixed, solved), np.where(along_first, solved, fixed)])
 
 

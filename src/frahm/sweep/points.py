@@ -8,7 +8,7 @@ from typing import Any
 from frahm.case import Case
 from frahm.loads import OperatingRange, frequency_range, operating_range, vortex_shedding
 from frahm.slow_flow import slow_flow_of
-from frahm.sweep.doors import WIND, WINDOW, is_window
+from frahm.sweep.field_types import WIND, WINDOW, is_window
 from frahm.sweep.study import Study
 from frahm.systems import System, build_system, excitation_frequency, excitation_window, with_parameters
 

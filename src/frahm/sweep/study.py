@@ -17,7 +17,7 @@ from frahm.case.problems import parameter_error
 from frahm.case.quantities import Count, Label, Quantity, refusal
 from frahm.case.section import CaseSection
 from frahm.errors import ParameterError, check_count
-from frahm.sweep.doors import WINDOW, AxisValues, BaseCase, Place
+from frahm.sweep.field_types import WINDOW, AxisValues, BaseCase, Place
 
 MOST_POINTS = 5_000_000
 _NOT_WITH_FATIGUE = ("wind_speed", "force", "detuning")

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import functools
 import os
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
-from frahm.case.documents import check_mapping, document_data, document_text, place
-from frahm.case.problems import parameter_error
+from frahm.case.documents import document_data, document_text
+from frahm.case.problems import model_from_data
 from frahm.case.table_files import files_beside
 from frahm.case.yaml_text import yaml_text
 from frahm.errors import ParameterError
@@ -65,10 +62,4 @@ def study_template(name: str) -> str:
 
 
 def _from_data(data: Any, source: str | None = None, lines: Mapping[str, int] | None = None) -> Study:
-    check_mapping(data, "study", _SECTIONS, source)
-    try:
-        return Study(**data)
-    except ParameterError as error:
-        if source is None or not isinstance(error.__cause__, ValidationError):
-            raise error from None
-        raise parameter_error(error.__cause__, Study, functools.partial(place, source, lines or {})) from None
+    return model_from_data(Study, data, "study", _SECTIONS, source, lines)

@@ -150,7 +150,7 @@ def _claimed(study: Study, path: Path, *, resume: bool, force: bool) -> tuple[St
     if not path.exists() or (force and not (resume and _same(study, path))):
         return create_store(path, study), 0
     if not _same(study, path):
-        hint = f"It holds {_described(study, path)}. Choose another folder, or replace it with --force (force=True)."
+        hint = f"It holds {_described(path)}. Choose another folder, or replace it with --force (force=True)."
         raise ParameterError("store", str(path), "a new folder, or a store of this study", hint=hint)
     if not resume:
         hint = "It holds this study; go on with --resume (resume=True), or begin anew with --force (force=True)."
@@ -165,7 +165,7 @@ def _same(study: Study, path: Path) -> bool:
     return stored_version(path) == __version__ and stored_study(path).digest == study.digest
 
 
-def _described(study: Study, path: Path) -> str:
+def _described(path: Path) -> str:
     version = stored_version(path)
     if version != __version__:
         return f"a sweep by frahm {version}, this is {__version__}"

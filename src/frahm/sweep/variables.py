@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from frahm.attractors.attractor import KINDS
-from frahm.sweep.doors import is_window
+from frahm.sweep.field_types import is_window
 from frahm.sweep.study import Study
 
 ROOTS = 3

@@ -31,6 +31,14 @@ def rms(values: Floats, per_period: int) -> float:
     return float(np.sqrt(np.mean(values[: whole_periods(values.size, per_period)] ** 2)))
 
 
+def sliding_amplitude(values: Floats, time: Floats, frequency: float, per_period: int, places: int) -> Floats:
+    """First-harmonic amplitude over a period that slides along the samples, at some places a period."""
+    carried = values * np.exp(-1j * frequency * time)
+    total = np.concatenate([[0.0], np.cumsum(carried)])
+    mean = (total[per_period:] - total[:-per_period]) / per_period
+    return np.asarray(2 * np.abs(mean[:: per_period // places]), dtype=float)
+
+
 def peak(x: Floats, v: Floats, spacing: float) -> float:
     """Largest |x|, between samples too: where v changes sign, the extremum of the cubic through both ends."""
     if x.size == 0:

@@ -40,7 +40,7 @@ def read_case(given: Any) -> Case:
 def read_question(body: bytes) -> dict[str, Any]:
     """A question of the script: the case that was opened, the texts of its fields, and what is asked about them."""
     asked = _mapping(read_json(body, "question"), "question")
-    _text(asked.get("case"), "case")
+    read_text(asked.get("case"), "case")
     _texts(asked.get("values"))
     read_session(asked.get("session"))
     for name, allowed in (("plane", PLANES), ("device", DEVICES)):
@@ -72,11 +72,6 @@ def read_click(clicked: Any) -> tuple[float, tuple[float | None, float | None]]:
         raise ParameterError("clicked.near", _short(near), "two peaks, one of them null")
     pipe, relative = (None if peak is None else check_number("clicked.near", peak, at_least=0) for peak in near)
     return check_number("clicked.place", clicked.get("place")), (pipe, relative)
-
-
-def read_text(given: Any, name: str) -> str:
-    """Text such as that of a file."""
-    return _text(given, name)
 
 
 def check_callback(body: bytes, known: Mapping[str, Any]) -> None:
@@ -148,7 +143,8 @@ def _mapping(given: Any, name: str) -> dict[str, Any]:
     return given
 
 
-def _text(given: Any, name: str) -> str:
+def read_text(given: Any, name: str) -> str:
+    """Text such as that of a file."""
     if not isinstance(given, str):
         raise ParameterError(name, _short(given), "a text")
     return given

@@ -152,11 +152,10 @@ def _view(history: Any, tail: Any, kind: str, about: str, detuning: float) -> An
 
 def _amplitude(history: Any, values: Floats) -> Floats:
     """First-harmonic amplitude [m] over a period that slides along the last part of the history."""
-    per_period = history.samples_per_period
-    carried = values * np.exp(-1j * history.frequency * history.time)
-    total = np.concatenate([[0.0], np.cumsum(carried)])
-    mean = (total[per_period:] - total[:-per_period]) / per_period
-    return np.asarray(2 * np.abs(mean[:: per_period // _SLIDES][-_MOST_POINTS:]), dtype=float)
+    from frahm.time_integration.signals import sliding_amplitude
+
+    found = sliding_amplitude(values, history.time, history.frequency, history.samples_per_period, _SLIDES)
+    return found[-_MOST_POINTS:]
 
 
 def _at_most(x: Floats, y: Floats) -> tuple[Floats, Floats]:

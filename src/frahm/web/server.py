@@ -18,7 +18,6 @@ from frahm.web.guard import ADDRESS, LocalOnly, WsgiApp
 from frahm.web.scope import Axis
 from frahm.web.sessions import Sessions
 
-DEFAULT_PORT = 8050
 _PATIENCE = 10.0  # [s] until more of a body must have come, or more of an answer been taken
 
 

@@ -20,8 +20,6 @@ if TYPE_CHECKING:  # loaded when the first curve is drawn, not before the page i
     from frahm.response import ResponseCurve
     from frahm.web.live import ManifoldLines
 
-COMPUTING = "Computing the exact response … (the first time ever, its code is compiled, which takes about a minute)"
-LATER = "The exact response follows when the sliders rest."
 NOT_VALID = "Drawn for the last valid values: see the field marked."
 NO_SLOW_FLOW = (
     "The slow flow is of one mode with one cubic sink: for this case the exact response is drawn, each time the "

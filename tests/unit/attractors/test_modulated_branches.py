@@ -100,7 +100,7 @@ def test_a_cycle_is_born_with_the_frequency_of_the_hopf_point():
 
 def test_a_special_point_has_its_multiplier():
     (start, _) = start_from_motion(SLOW, SCALES, np.zeros(4), SLOW.omega - 0.003)
-    points, _ = followed_branch(SLOW, SCALES, start, (SLOW.omega - 0.01, SLOW.omega + 0.01), None)
+    points, _ = followed_branch(SCALES, start, (SLOW.omega - 0.01, SLOW.omega + 0.01), None)
     for kind, expected in (("period-doubling", -1), ("fold of cycles", 1)):
         (cycle,) = [p.cycle for p in points if p.special == kind and 110 < p.cycle.period < 120][:1]
         other = monodromy(SLOW, cycle.frequency, cycle.nodes[0], cycle.period)

@@ -12,7 +12,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from frahm.case import Case, builtin_names, case_schema, load_case
-from frahm.case.quantities import Count, Door, Quantity, refusal
+from frahm.case.quantities import Count, FieldType, Quantity, refusal
 from frahm.case.table_files import beside
 from frahm.errors import ParameterError, nearest
 
@@ -111,7 +111,7 @@ class AxisValues(Quantity):
 
 
 @dataclass(frozen=True)
-class Place(Door):
+class Place(FieldType):
     """Where on the frequency axis: at a detuning, over a window of it, or as the wind has it."""
 
     @property
@@ -151,7 +151,7 @@ class Place(Door):
 
 
 @dataclass(frozen=True)
-class BaseCase(Door):
+class BaseCase(FieldType):
     """The case a study starts from: a name, a file beside that of the study, or the case itself."""
 
     @property
