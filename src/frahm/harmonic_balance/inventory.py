@@ -31,7 +31,10 @@ def inventory_text(search: Search) -> str:
     elif seeder.table is not None:
         start = dense
     elif seeder.shared is not None:
-        start = "all first-harmonic solutions, births of detached curves, and motions of equal absorbers alike"
+        start = (
+            "all first-harmonic solutions of every frequency at which there are more of them than responses on branches"
+            " already followed, births of detached curves, and motions of equal absorbers alike"
+        )
     else:
         start = _SPREAD
         if search.problem.odd and not seeder.buckled:
