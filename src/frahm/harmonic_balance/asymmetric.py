@@ -178,9 +178,6 @@ def _half_of_pair(search: Search, branch: SolutionBranch) -> SolutionBranch:
     sizes = np.array([np.linalg.norm(p) for p in parts])
     if not flips:
         keep = np.arange(len(parts))
-    elif branch.closed:
-        order = np.concatenate([np.arange(flips[0] + 1, len(parts) - 1), np.arange(flips[0] + 1)])
-        keep = order[: ((flips[1] if len(flips) > 1 else flips[0]) - flips[0]) or len(order)]
     else:
         start = int(np.argmax(sizes))
         low = max([i + 1 for i in flips if i < start], default=0)

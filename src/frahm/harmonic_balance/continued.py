@@ -44,17 +44,17 @@ class _Continued:
     asymmetric: list[Solution] = field(default_factory=list)
     breaks: list[Floats] = field(default_factory=list)  # points (X / scale, lambda) where the symmetry is lost
 
-    def follow(self, odd: bool, y: Floats, normal: Floats, side: float) -> set[int]:
-        """Add the solutions on a curve over the force; returns which of all these it passes."""
+    def follow(self, odd: bool, y: Floats, normal: Floats, side: float) -> tuple[set[int], bool]:
+        """Add the solutions on a curve over the force; returns which of all these it passes, and whether it ended."""
         out, breaks = np.empty((_ROOM, y.size - 1)), np.empty((_ROOM if odd else 0, y.size))
-        count, broken, _ = follow_over_force(
+        count, broken, ended = follow_over_force(
             self.search.problem, odd, _HARMONICS, self.W, y, normal, *_FORCES, side, self.scale, _LONGEST, _MOST_STEPS,
             out, breaks,
         )  # fmt: skip
         self.breaks += [
             one for one in breaks[:broken] if not any(np.linalg.norm(one - o) < _LONGEST for o in self.breaks)
         ]
-        return {self.add(odd, self._seed(odd, X)) for X in out[:count]}
+        return {self.add(odd, self._seed(odd, X)) for X in out[:count]}, bool(ended)
 
     def add(self, odd: bool, seed: Seed) -> int:
         """Add what Newton's method makes of a start; returns its place in the list, -1 if it is nothing."""
@@ -119,7 +119,7 @@ def _follow_from_solutions(found: _Continued) -> None:
     for i, (X, H) in enumerate(found.symmetric):
         y = np.append(found.within(True, X, H, n) / found.scale, 1.0)
         for side in (-1.0, 1.0) if i not in passed else ():
-            passed |= found.follow(True, y, np.eye(n + 1)[n], side)
+            passed |= found.follow(True, y, np.eye(n + 1)[n], side)[0]
 
 
 def _follow_beside_misses(found: _Continued, known: Solutions) -> None:
@@ -151,7 +151,8 @@ def _follow_asymmetric(found: _Continued) -> None:
         normal = np.append(normal.ravel(), 0.0)
         for push in _PUSHES:
             y = np.append(full[:-1] / found.scale, point[-1]) + push * normal
-            if found.follow(False, y, normal, 1.0) - {-1}:
+            sides = [found.follow(False, y, normal, side) for side in (1.0, -1.0)]
+            if any(ended for _, ended in sides):
                 break
 
 

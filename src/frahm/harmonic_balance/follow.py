@@ -13,7 +13,7 @@ from frahm.compiled import kernel, separate_kernel
 from frahm.harmonic_balance.kernels import fourier_tables, sample_count, unknowns
 from frahm.harmonic_balance.newton import correct, resize, tangent
 
-LEFT, CLOSED, STEP_TOO_SMALL, TOO_LONG, NO_START = 0, 1, 2, 3, 4
+LEFT, CLOSED, STEP_TOO_SMALL, TOO_LONG, NO_START, MIRRORED = 0, 1, 2, 3, 4, 5
 
 _ANGLE = 0.3  # turn of the tangent aimed at per step [rad]
 _SHARPEST = 0.5  # turn beyond which a step is taken again, shorter [rad]
@@ -22,7 +22,7 @@ _TOLERANCE = 3e-7  # last Newton step, in scaled unknowns: what remains is of th
 
 @kernel
 def follow(pb, odd, y0, H0, H_most, goal, direction, lo, hi, x_scale, w_scale, longest, ys, ts, Hs, truncations):
-    """Follow the branch through y0 = (X, Omega) until it leaves [lo, hi] or closes.
+    """Follow the branch through y0 = (X, Omega) until it leaves [lo, hi] or closes, or turns into its mirror image.
 
     Fills ys, ts (points, size) with points and scaled unit tangents, Hs and truncations (points,); harmonics are added
     and dropped on the way so that the truncation stays below `goal`. Returns (number of points, how it ended).
@@ -83,6 +83,8 @@ def follow(pb, odd, y0, H0, H_most, goal, direction, lo, hi, x_scale, w_scale, l
         ds = min(longest, ds * min(2.0, max(0.5, _ANGLE / max(angle, 1e-3))))
         if y[n] < lo or y[n] > hi:
             return count, LEFT
+        if pb.odd and not odd and _even_product(pb, ys[count - 2], ys[count - 1], n) < 0.0:
+            return count, MIRRORED
         quiet = quiet + 1 if truncation < 1e-3 * goal and goal < math.inf else 0  # a given number is kept
         if quiet > 3 and H - 2 * step >= 3:  # more harmonics than needed
             H -= 2 * step
@@ -111,6 +113,17 @@ def _resize_last(pb, odd, H, count, ys, ts, Hs):
         resize(pb, Hs[i], H, odd, ts[i])
         Hs[i] = H
     return unknowns(pb, H, odd)
+
+
+@kernel
+def _even_product(pb, a, b, n):
+    """Scalar product of mean and even harmonics of two points: it changes its sign where the symmetry is regained."""
+    width = 2 * pb.M11.shape[0]
+    total = 0.0
+    for start in range(0, n, 2 * width):
+        for j in range(start, start + width):
+            total += a[j] * b[j]
+    return total
 
 
 @kernel

@@ -6,7 +6,7 @@ from frahm.harmonic_balance.alike import moving_alike
 from frahm.harmonic_balance.births import MARGIN
 from frahm.harmonic_balance.branch import SolutionBranch
 from frahm.harmonic_balance.describing import PER_DECADE
-from frahm.harmonic_balance.follow import CLOSED, LEFT
+from frahm.harmonic_balance.follow import CLOSED, LEFT, MIRRORED
 from frahm.harmonic_balance.search import Search
 
 _SPREAD = "first-harmonic solutions were searched from a fixed spread of starts (not proven complete)"
@@ -31,7 +31,10 @@ def inventory_text(search: Search) -> str:
     elif seeder.table is not None:
         start = dense
     elif seeder.shared is not None:
-        start = "all first-harmonic solutions, births of detached curves, and motions of equal absorbers alike"
+        start = (
+            "all first-harmonic solutions of every frequency at which there are more of them than responses on branches"
+            " already followed, births of detached curves, and motions of equal absorbers alike"
+        )
     else:
         start = _SPREAD
         if search.problem.odd and not seeder.buckled:
@@ -101,5 +104,5 @@ def unfinished(branches: list[SolutionBranch]) -> list[str]:
         f"Branch {number} could not be followed to its end; it stops near"
         f" {branch.points.frequency[0]:.6g}, {branch.points.frequency[-1]:.6g} rad/s."
         for number, branch in enumerate(branches)
-        if any(ending not in (LEFT, CLOSED) for ending in branch.endings)
+        if any(ending not in (LEFT, CLOSED, MIRRORED) for ending in branch.endings)
     ]

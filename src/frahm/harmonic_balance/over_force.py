@@ -17,6 +17,7 @@ from frahm.harmonic_balance.kernels import fourier_tables, residual_and_jacobian
 _ANGLE, _SHARPEST = 0.35, 0.6  # turn of the tangent aimed at in a step, and beyond which it is taken again [rad]
 _TOLERANCE = 1e-6  # last Newton step, in scaled unknowns
 _SHORTEST = 1e-6  # of the longest step
+_HALVINGS = 8  # of a step in which the symmetry is lost
 _BETWEEN = 32  # places of a step looked at for lambda = 1
 
 
@@ -31,7 +32,8 @@ def follow_over_force(pb, odd, H, W, y0, normal, lo, hi, direction, x_scale, lon
     """
     n = unknowns(pb, H, odd)
     r = pb.M11.shape[0]
-    y, t, old, new = y0.copy(), normal.copy(), np.zeros(n + 1), np.zeros(n + 1)
+    y, t, new = y0.copy(), normal.copy(), np.zeros(n + 1)
+    old, old_t = np.zeros(n + 1), np.zeros(n + 1)
     R, J, A = np.empty(n + 1), np.empty((n + 1, n + 1)), np.empty((n + 1, n + 1))
     pivots = np.empty(n + 1, np.int64)
     co, si = fourier_tables(H, odd, sample_count(pb, H, odd))
@@ -49,7 +51,7 @@ def follow_over_force(pb, odd, H, W, y0, normal, lo, hi, direction, x_scale, lon
     side = _even_side(pb, H, W, y, x_scale, tables, full, full_R, full_J, even, pivots) if odd else 0
     ds, number, broken, count = 0.1 * longest, 0, 0, 0
     while count < most:
-        old[:] = y
+        old[:], old_t[:] = y, t
         for j in range(n + 1):
             y[j] += ds * t[j]
         ok, moved = _correct(pb, odd, H, W, y, t, np.dot(y, t), x_scale, F, co, si, R, J, A, pivots)
@@ -74,8 +76,16 @@ def follow_over_force(pb, odd, H, W, y0, normal, lo, hi, direction, x_scale, lon
             if side * before < 0:
                 if broken >= breaks.shape[0]:
                     return number, broken, False
-                for j in range(n + 1):
-                    breaks[broken, j] = 0.5 * (old[j] + y[j])
+                inner, lower, upper = breaks[broken], 0.0, 1.0
+                for _ in range(_HALVINGS):
+                    share = 0.5 * (lower + upper)
+                    _put_between(old, old_t, y, t, share, inner)
+                    _correct(pb, odd, H, W, inner, t, np.dot(inner, t), x_scale, F, co, si, R, J, A, pivots)
+                    here = _even_side(pb, H, W, inner, x_scale, tables, full, full_R, full_J, even, pivots)
+                    if here * before < 0:
+                        upper = share
+                    else:
+                        lower = share
                 broken += 1
         elif _even_product(pb, old, y) < 0.0:
             return number, broken, True
@@ -210,6 +220,14 @@ def _put_starts(a, ta, b, tb, n, x_scale, out, number):
             number += 1
         before = here
     return number
+
+
+@kernel
+def _put_between(a, ta, b, tb, f, y):
+    """Fill y with the point at the share f of the cubic from a to b."""
+    chord = math.sqrt(np.sum((b - a) ** 2))
+    for j in range(y.size):
+        y[j] = _between(a[j], chord * ta[j], b[j], chord * tb[j], f)
 
 
 @kernel
