@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.stats import binom, chi2
@@ -44,7 +44,15 @@ class RarePeaks:
     @classmethod
     def known(cls, pipe: float, relative: float) -> RarePeaks:
         """Of a motion whose peaks are always the same, or of one that nothing is known of."""
-        return cls(lambda: (Level(pipe, (pipe, pipe)), Level(relative, (relative, relative))))
+        return cls.of((Level(pipe, (pipe, pipe)), Level(relative, (relative, relative))))
+
+    @classmethod
+    def of(cls, levels: tuple[Level, Level]) -> RarePeaks:
+        """Those that have been found."""
+        return cls(lambda: levels)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return RarePeaks.of, (self.levels,)  # compiled code in another process could not go on from addresses of this
 
     @functools.cached_property
     def levels(self) -> tuple[Level, Level]:

@@ -1,5 +1,7 @@
 """The bound of a motion that never repeats: levels of known distributions, and of motions not seen."""
 
+import pickle
+
 import numpy as np
 import pytest
 from scipy.stats import genextreme
@@ -111,6 +113,14 @@ def test_long_motions_are_followed_only_where_rare_peaks_are_asked_for(monkeypat
     assert low <= chaos.pipe_peak_expected <= high
     assert chaos.relative_peak_expected > 0
     assert len(followed) == 1
+
+
+def test_rare_peaks_are_found_before_an_attractor_goes_to_another_process():
+    """The stroboscope that would find them later holds addresses of this process."""
+    chaos = frahm.find_attractors(BURSTS, frequency=1.0, samples=8)[0]
+    sent = pickle.dumps(chaos)
+    assert b"Stroboscope" not in sent
+    assert pickle.loads(sent).pipe_peak_expected_interval == chaos.pipe_peak_expected_interval
 
 
 def test_the_bound_of_a_periodic_motion_is_its_peak():
