@@ -23,7 +23,7 @@ import math
 
 import numpy as np
 
-from frahm.compiled import kernel
+from frahm.compiled import kernel, separate_kernel
 from frahm.design.kernels import _beyond, _birth, _extremes, _slope, _squares
 
 POINTS = 40  # of the motion over all its size, on every curve
@@ -329,7 +329,7 @@ def _room(absorbers):
     return 3**absorbers * (2 * absorbers + 1) * POINTS
 
 
-@kernel
+@separate_kernel
 def _curves(W, a, weakest, strongest, group, spring, damping, work):
     """All choices of answers at Omega = W as curves in `work`; returns the number of their places."""
     laws, edges, starts, s, tables, chain, need, ratio, squares = work
@@ -417,7 +417,7 @@ def _best_bracket(choice, left, right, a, laws):
     return lo, hi
 
 
-@kernel
+@separate_kernel
 def _extreme(choice, left, right, sign, a, laws):
     """s between two of one choice where `sign` times the force needed is least, and that force.
 
@@ -481,7 +481,7 @@ def _hidden(p, below, need, ratio):
     return s * (nearest.real**2 + nearest.imag**2) < min(below, _DIP * min(need[p], need[p + 1]))
 
 
-@kernel
+@separate_kernel
 def _responses(number, level, a, work, found, hits):
     """Responses to a squared free motion `level`: s and sum R into `found` (n, 3), |Z|^2 into `hits` (n, N)."""
     laws, _, _, s, _, chain, need, ratio, squares = work
@@ -509,6 +509,26 @@ def _responses(number, level, a, work, found, hits):
                 count = _put(choice, left, at, need[begin], extreme, level, a, laws, found, hits, count)
                 count = _put(choice, at, right, extreme, need[end], level, a, laws, found, hits, count)
     return count
+
+
+@kernel
+def _is_linear(group):
+    return np.all(group[:, 2] == 0.0) and np.all(group[:, 4] == 0.0)
+
+
+@kernel
+def _linear_response(W, level, a, group, spring, damping, laws, found, hits):
+    """As `_responses`, where no absorber has a nonlinear spring: there is one."""
+    _prepare(W, group, spring, damping, laws)
+    total = complex(0.0, 0.0)
+    for i in range(laws.shape[0]):
+        total += _reaction(0.0, laws[i])
+    z = 1.0 - a * total
+    s = level / (z.real * z.real + z.imag * z.imag)
+    found[0, 0], found[0, 1], found[0, 2] = s, total.real, total.imag
+    for i in range(laws.shape[0]):
+        hits[0, i] = _answer(_LOW, s, 0.0, laws[i])
+    return 1
 
 
 @kernel
@@ -570,6 +590,7 @@ def group_responses(frequency, a, u, b, x, absorber, mode, forces, designs, rati
     low, top = np.min(forces) ** 2, np.max(forces) ** 2
     for at in range(designs.shape[0]):
         group = designs[at]
+        linear = _is_linear(group)
         stroke, growth = 0.0, -math.inf
         peaks[at] = 0.0
         for r in range(R):
@@ -578,9 +599,15 @@ def group_responses(frequency, a, u, b, x, absorber, mode, forces, designs, rati
                 free = u[r, j].real ** 2 + u[r, j].imag ** 2
                 if free == 0.0:
                     continue
-                number = _curves(frequency[r, j], a[r, j], low * free, top * free, group, spring, damping, work)
+                W_j, a_j, number = frequency[r, j], a[r, j], 0
+                if not linear:
+                    number = _curves(W_j, a_j, low * free, top * free, group, spring, damping, work)
                 for f in range(forces.size):
-                    count = _responses(number, forces[f] ** 2 * free, a[r, j], work, hits, squares)
+                    level = forces[f] ** 2 * free
+                    if linear:
+                        count = _linear_response(W_j, level, a_j, group, spring, damping, work[0], hits, squares)
+                    else:
+                        count = _responses(number, level, a_j, work, hits, squares)
                     for hit in range(count):
                         total = complex(hits[hit, 1], hits[hit, 2])
                         motion = forces[f] * u[r, j] / (1.0 - a[r, j] * total)
@@ -605,6 +632,7 @@ def group_amplitudes(frequency, a, u, b, x, absorber, designs, found):
     hits, squares = np.empty((3**N * 4, 3)), np.empty((3**N * 4, N))
     found[:] = 0.0
     for at in range(designs.shape[0]):
+        linear = _is_linear(designs[at])
         for r in range(R):
             spring, damping = absorber[r]
             for j in range(W):
@@ -612,8 +640,13 @@ def group_amplitudes(frequency, a, u, b, x, absorber, designs, found):
                 if free == 0.0:
                     found[at, r, j] = abs(x[r, j])
                     continue
-                number = _curves(frequency[r, j], a[r, j], free, free, designs[at], spring, damping, work)
-                count = _responses(number, free, a[r, j], work, hits, squares)
+                if linear:
+                    count = _linear_response(
+                        frequency[r, j], free, a[r, j], designs[at], spring, damping, work[0], hits, squares
+                    )
+                else:
+                    number = _curves(frequency[r, j], a[r, j], free, free, designs[at], spring, damping, work)
+                    count = _responses(number, free, a[r, j], work, hits, squares)
                 for hit in range(count):
                     total = complex(hits[hit, 1], hits[hit, 2])
                     size = abs(x[r, j] + b[r, j] * total * u[r, j] / (1.0 - a[r, j] * total))
@@ -689,7 +722,7 @@ def group_births(frequency, a, u, absorber, designs, found):
     seen = np.empty(_SHEETS, np.int64)
     for at in range(designs.shape[0]):
         found[at] = math.inf
-        if np.all(designs[at, :, 2] == 0.0) and np.all(designs[at, :, 4] == 0.0):
+        if _is_linear(designs[at]):
             continue
         for r in range(R):
             spring, damping = absorber[r]
