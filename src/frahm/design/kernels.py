@@ -12,7 +12,7 @@ born where that force is least over the frequency, and lives until the force rea
 
 With k5 above 0 the squared load L(N) = |d0 + n s0|^2 N is of the fifth degree in N = |Z|^2. By Descartes' rule its
 slope has two positive zeros at most, so that there are three roots at most here, too: one below the largest load on the
-way, one between, one above the least load (`_extremes`).
+way, one between, one above the least load (`extremes`).
 """
 
 from __future__ import annotations
@@ -66,27 +66,27 @@ def _load(N, k, q, D, R, S):
 
 
 @kernel
-def _slope(N, k, q, D, R, S):
+def load_slope(N, k, q, D, R, S):
     """Derivative of `_load` by N."""
     return D + N * (4.0 * k * R + N * (3.0 * k * k * S + 6.0 * q * R + N * (8.0 * k * q * S + N * 5.0 * q * q * S)))
 
 
 @kernel
 def _bend(N, k, q, R, S):
-    """Derivative of `_slope` by N; its one positive zero is where the slope is least, if R < 0."""
+    """Derivative of `slope` by N; its one positive zero is where the slope is least, if R < 0."""
     return 4.0 * k * R + N * (6.0 * k * k * S + 12.0 * q * R + N * (24.0 * k * q * S + N * 20.0 * q * q * S))
 
 
 @kernel
 def _zero(kind, lo, hi, k, q, D, R, S, goal):
-    """N between `lo` and `hi`, where _load - goal (0), _slope (1) or _bend (2) changes its sign."""
-    rising = kind != 1 or _slope(hi, k, q, D, R, S) > 0.0
+    """N between `lo` and `hi`, where _load - goal (0), slope (1) or _bend (2) changes its sign."""
+    rising = kind != 1 or load_slope(hi, k, q, D, R, S) > 0.0
     for _ in range(60):
         N = 0.5 * (lo + hi)
         if kind == 0:
             value = _load(N, k, q, D, R, S) - goal
         elif kind == 1:
-            value = _slope(N, k, q, D, R, S)
+            value = load_slope(N, k, q, D, R, S)
         else:
             value = _bend(N, k, q, R, S)
         if (value > 0.0) == rising:
@@ -99,21 +99,21 @@ def _zero(kind, lo, hi, k, q, D, R, S, goal):
 
 
 @kernel
-def _beyond(k, q, D, R, S, load):
+def beyond(k, q, D, R, S, load):
     """N beyond all roots, and beyond what makes slope and bend negative."""
     N = load / max(D, 1e-300)
-    while _load(N, k, q, D, R, S) <= load or _slope(N, k, q, D, R, S) <= 0.0 or _bend(N, k, q, R, S) <= 0.0:
+    while _load(N, k, q, D, R, S) <= load or load_slope(N, k, q, D, R, S) <= 0.0 or _bend(N, k, q, R, S) <= 0.0:
         N *= 2.0
     return N
 
 
 @kernel
-def _extremes(k, q, D, R, S, most):
+def extremes(k, q, D, R, S, most):
     """Whether the load has a largest and a least value on its way, and the N of both."""
     if R >= 0.0:
         return False, 0.0, 0.0
     least = _zero(2, 0.0, most, k, q, D, R, S, 0.0)
-    if _slope(least, k, q, D, R, S) >= 0.0:
+    if load_slope(least, k, q, D, R, S) >= 0.0:
         return False, 0.0, 0.0
     return True, _zero(1, 0.0, least, k, q, D, R, S, 0.0), _zero(1, least, most, k, q, D, R, S, 0.0)
 
@@ -132,8 +132,8 @@ def _squares_of_quintic(k, q, d0, s0, drive):
     D, R, S, load = _norms(d0, s0, drive)
     if load == 0.0:
         return 1, 0.0, math.nan, math.nan
-    most = _beyond(k, q, D, R, S, load)
-    there, low, high = _extremes(k, q, D, R, S, most)
+    most = beyond(k, q, D, R, S, load)
+    there, low, high = extremes(k, q, D, R, S, most)
     if not there:
         return 1, _zero(0, 0.0, most, k, q, D, R, S, load), math.nan, math.nan
     largest, least = _load(low, k, q, D, R, S), _load(high, k, q, D, R, S)
@@ -154,7 +154,7 @@ def _squares_of_quintic(k, q, d0, s0, drive):
 
 
 @kernel
-def _squares(k, q, d0, s0, drive):
+def squares(k, q, d0, s0, drive):
     """All |Z|^2: their number, then three values; k = 3/4 k3, q = 5/8 k5."""
     if q > 0.0:
         return _squares_of_quintic(k, q, d0, s0, drive)
@@ -175,7 +175,7 @@ def _onset_of(k, q, d0, s0, drive):
     D, R, S, load = _norms(d0, s0, drive)
     if load == 0.0:
         return math.inf
-    there, _, high = _extremes(k, q, D, R, S, _beyond(k, q, D, R, S, load))
+    there, _, high = extremes(k, q, D, R, S, beyond(k, q, D, R, S, load))
     return math.sqrt(max(_load(high, k, q, D, R, S), 0.0) / load) if there else math.inf
 
 
@@ -188,7 +188,7 @@ def _output(N, k, q, G, d0, s0, drive, b, x):
 
 
 @kernel
-def _birth(onset, highest):
+def birth(onset, highest):
     """Least factor on the force at which a detached curve is born that still exists at the force given.
 
     `onset` (W,) holds the factors of `_onset` over the frequency, `highest` (W,) is room for work. A range too narrow
@@ -242,7 +242,7 @@ def births(frequency, a, u, absorber, designs, found):
             for j in range(W):
                 _, d0, s0, drive = _balance(frequency[r, j], a[r, j], u[r, j], m, spring * k1, damping * damper)
                 onset[j] = _onset_of(k, q, d0, s0, drive)
-            found[i] = min(found[i], _birth(onset, highest))
+            found[i] = min(found[i], birth(onset, highest))
 
 
 @kernel
@@ -261,7 +261,7 @@ def largest_responses(frequency, a, u, b, x, absorber, designs, limit, worst):
             k, q = 0.75 * spring * k3, 0.625 * spring * k5
             for j in range(W):
                 G, d0, s0, drive = _balance(frequency[r, j], a[r, j], u[r, j], m, spring * k1, damping * damper)
-                count, N1, N2, N3 = _squares(k, q, d0, s0, drive)
+                count, N1, N2, N3 = squares(k, q, d0, s0, drive)
                 for root in range(count):
                     N = N1 if root == 0 else (N2 if root == 1 else N3)
                     _, size = _output(N, k, q, G, d0, s0, drive, b[r, j], x[r, j])
@@ -282,7 +282,7 @@ def amplitude_tables(frequency, a, u, b, x, absorber, designs, found):
             k, q = 0.75 * spring * k3, 0.625 * spring * k5
             for j in range(W):
                 G, d0, s0, drive = _balance(frequency[r, j], a[r, j], u[r, j], m, spring * k1, damping * damper)
-                count, N1, N2, N3 = _squares(k, q, d0, s0, drive)
+                count, N1, N2, N3 = squares(k, q, d0, s0, drive)
                 square = 0.0
                 for root in range(count):
                     N = N1 if root == 0 else (N2 if root == 1 else N3)
@@ -310,7 +310,7 @@ def screened(frequency, a, u, b, x, absorber, mode, designs, found, peaks):
             square = 0.0
             for j in range(W):
                 G, d0, s0, drive = _balance(frequency[r, j], a[r, j], u[r, j], m, spring * k1, damping * damper)
-                count, N1, N2, N3 = _squares(k, q, d0, s0, drive)
+                count, N1, N2, N3 = squares(k, q, d0, s0, drive)
                 d2, d1, e0, s1, t0, _, _ = linear_parts(
                     AVERAGED, frequency[r, j], omega, xi1, damping * damper / mass, spring * k1 / mass, m / mass
                 )

@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frahm.arrays import Floats
-from frahm.design.group_kernels import group_amplitudes, group_births, group_responses
+from frahm.design.groups import group_amplitudes, group_births, group_responses
 from frahm.design.host import Conditions, Host
 from frahm.design.kernels import amplitude_tables, births, largest_responses, screened
 from frahm.design.objective import ClimateMean

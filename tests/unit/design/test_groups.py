@@ -10,7 +10,7 @@ import frahm
 from frahm.design import verified_designs
 from frahm.design.absorber import DesignedAbsorber, parameters_text, together, with_design
 from frahm.design.disturbance import Disturbance
-from frahm.design.group_kernels import group_births, group_responses
+from frahm.design.groups import group_births, group_responses
 from frahm.design.host import host_of
 from frahm.design.kernels import births, screened
 from frahm.design.settings import DesignSettings
