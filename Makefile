@@ -57,7 +57,7 @@ docs: setup
 	@echo "docs/_build/html/index.html"
 
 scatter-study: setup
-	$(BIN)/python examples/scatter_study.py
+	$(BIN)/python examples/scatter_study.py $(SCATTER)
 
 where-a-sink-wins: setup
 	$(BIN)/python examples/where_a_sink_wins.py
