@@ -1,4 +1,4 @@
-"""The standing attack: `python tests/attack/run.py --systems 200 --worst 40 --designs 29 --minutes 60`.
+"""The standing attack: `python tests/attack/run.py --systems 200 --worst 40 --designs 34 --minutes 60`.
 
 Writes out/attack/attack.json, every number, and out/attack/attack.md, the counts, which the documentation keeps.
 """
@@ -14,7 +14,7 @@ import frahm
 from attractors_attacked import attack
 from random_systems import drawn
 from summary import summary, text
-from worst_attacked import MEMBERS, RATIOS, SCATTER, SMALL, WIDE, attack_design, attack_random
+from worst_attacked import MEMBERS, NO_SCATTER, RATIOS, SCATTER, SMALL, WIDE, attack_design, attack_random
 
 GENTLE = 0.3  # factor on the force of systems whose worst is asked for: more of them can be verified
 
@@ -42,6 +42,7 @@ def _jobs(arguments):
     gentle = [(n, drawn(n, GENTLE)) for n in range(first, first + arguments.worst)]
     worst = [("worst", n, lambda one=one: [attack_random(one)]) for n, one in gentle]
     asked = [(member, ratio, SCATTER) for ratio in RATIOS for member in MEMBERS] + [(one, 0.02, WIDE) for one in SMALL]
+    asked += [(one, 0.02, NO_SCATTER, 2) for one in SMALL]  # two absorbers together
     asked = asked[: arguments.designs]
     designs = [("designs", one, lambda one=one: attack_design(*one)) for one in asked]
     parts = [part for part in (attractors, worst, designs) if part]
@@ -53,7 +54,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--systems", type=int, default=200)
     parser.add_argument("--worst", type=int, default=60)
-    parser.add_argument("--designs", type=int, default=len(MEMBERS) * len(RATIOS) + len(SMALL))
+    parser.add_argument("--designs", type=int, default=len(MEMBERS) * len(RATIOS) + 2 * len(SMALL))
     parser.add_argument("--first", type=int, default=0, help="number of the first system")
     parser.add_argument("--minutes", type=float, default=90.0)
     parser.add_argument("--out", default="out/attack")

@@ -14,7 +14,6 @@ from frahm.attractors.attractor import clopper_pearson
 from frahm.attractors.finding import settling_periods
 from frahm.attractors.regions import region_for
 from frahm.case import Scatter
-from frahm.design import with_design
 from frahm.design.disturbance import Disturbance
 from frahm.design.problem import Problem
 from frahm.loads import frequency_range, operating_range
@@ -27,6 +26,7 @@ SMALL = ("stiff", "jacket-pipe", "calm", "chimney", "brace")  # of one mode, whe
 RATIOS = (0.01, 0.02, 0.05)
 SCATTER = Scatter(pipe_frequency=0.05)
 WIDE = Scatter(pipe_frequency=0.05, kappa=0.1, xi2=0.1)
+NO_SCATTER = Scatter()
 LARGER = 1.01  # what is larger by less is as large
 STATES, AGAIN = 400, 200  # random motions of a range; at a frequency where one of them is larger
 _DISTURBED, _SAMPLES = 8, 16
@@ -52,19 +52,20 @@ def attack_random(drawn, samples=100, states=STATES):
     return row | challenge(promise, drawn.system, within, region, states, drawn.number)
 
 
-def attack_design(name, ratio, scatter=SCATTER, samples=_SAMPLES, states=STATES):
-    """Every device that a design compares, nominal and with everything off that scatters."""
+def attack_design(name, ratio, scatter=SCATTER, count=1, samples=_SAMPLES, states=STATES):
+    """Every device of so many absorbers that a design compares, nominal and with everything off that scatters."""
     case = frahm.load_case(CASES / f"{name}.yaml" if (CASES / f"{name}.yaml").exists() else name)
     study = frahm.design_absorber(
-        case, mass_ratio=ratio, family="mixed", scatter=scatter, samples=samples, errors=(), margins=()
+        case, mass_ratio=ratio, family="mixed", scatter=scatter, count=count, samples=samples, errors=(), margins=()
     )
     problem = Problem.of(study.case, study.settings)
     rows = []
     for rival in study.comparison:
         if rival.design is None:
             continue
-        device = with_design(study.case, rival.design)
-        rows += _device(f"{name} {100 * ratio:g} % {rival.name}", rival, device, problem, samples, states)
+        device = study.case if rival.name == "case" else problem.case_with(rival.design)
+        many = "" if count == 1 else f" x {rival.count}"
+        rows += _device(f"{name} {100 * ratio:g} % {rival.name}{many}", rival, device, problem, samples, states)
         if rival.design == study.best.design and math.isfinite(study.with_margin):
             rows.append(_with_margin(f"{name} {100 * ratio:g} % margin", study, device, samples, states))
     return rows
@@ -106,7 +107,7 @@ def _device(name, rival, device, problem, samples, states):
         region = region_for(mode.system, within.frequency[1], promise.pipe_peak, promise.stroke)
         rows.append(nominal | challenge(promise, mode.system, within, region, states))
         random = np.random.default_rng(5)
-        for index in range(_DISTURBED):
+        for index in range(_DISTURBED if problem.settings.scatter.names else 0):
             off = _disturbance(problem, random)
             if not mode.windows.includes(off):
                 continue
@@ -134,7 +135,8 @@ def _disturbance(problem, random):
     scatter = problem.settings.scatter
     sizes = {name: getattr(scatter, name) for name in scatter.names}
     lock_in = not problem.within.over_wind
-    return replace(Disturbance(lock_in=lock_in), **{name: 1 + s * random.uniform(-1, 1) for name, s in sizes.items()})
+    nominal = Disturbance(lock_in=lock_in, count=problem.settings.counts[-1])
+    return replace(nominal, **{name: 1 + s * random.uniform(-1, 1) for name, s in sizes.items()})
 
 
 def _larger(motions, promise):
