@@ -1,4 +1,4 @@
-"""Which few rows of a table of utilisations leave the smallest worst one, if every column takes the row that suits it."""
+"""Which few rows of a table of utilisations leave the smallest worst one, where every column takes its best row."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ def best_rows(values: Floats, count: int) -> tuple[int, ...]:
     """
     levels = np.unique(np.min(values, axis=0))
     levels = np.unique(values[np.isfinite(values) & (values >= levels[-1])])
-    best, lo, hi = (int(np.argmin(np.max(values, axis=1))),), 0, len(levels) - 1
+    best: tuple[int, ...] = (int(np.argmin(np.max(values, axis=1))),)
+    lo, hi = 0, len(levels) - 1
     while lo <= hi:
         middle = (lo + hi) // 2
         found = _serving(values <= levels[middle], count)

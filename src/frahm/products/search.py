@@ -24,7 +24,8 @@ from frahm.products.cover import best_rows
 from frahm.products.served import ServedMember, hull
 
 _LIBRARY, _LEAST, _MOST_PAIRS = 4096, 16, 256  # devices of a library; of one pair at least; pairs
-_POPULATION, _GENERATIONS, _CONVERGED, _SEED = 24, 50, 1e-3, 1
+_POPULATION, _DRAWN = 24, 32  # devices of an evolution, and those drawn for it: a power of two
+_GENERATIONS, _CONVERGED, _SEED = 50, 1e-3, 1
 _ROUNDS = 5  # of making kinds and taking them
 _BETTER = 0.995  # a product that is less than this much better is no better
 
@@ -99,7 +100,7 @@ class ProductSearch:
         devices = np.concatenate(parts)
         return devices, self._table(devices)
 
-    def _table(self, devices: Floats, of: Sequence[int] | None = None) -> Floats:
+    def _table(self, devices: Floats, of: Sequence[int] | np.ndarray | None = None) -> Floats:
         members = self.members if of is None else [self.members[at] for at in of]
         return np.column_stack(_in_threads(lambda member: member.utilisation(devices), members))
 
@@ -163,7 +164,7 @@ class ProductSearch:
         suited = devices[np.argsort(np.max(table[:, group], axis=1), kind="stable")[: _POPULATION // 2]]
         suited = suited if known is None else np.concatenate([known, suited])
         first = np.clip(space.units(_as_heavy(suited, mass)), 0.0, 1.0)[: _POPULATION // 2]
-        rest = qmc.Sobol(space.size, seed=_SEED).random(_POPULATION - len(first))
+        rest = qmc.Sobol(space.size, seed=_SEED).random(_DRAWN)[: _POPULATION - len(first)]
 
         def worst(units: Floats) -> Floats:
             found = np.max(self._table(space.designs(units.T), group), axis=1)
@@ -181,8 +182,8 @@ _HUGE = 1e30  # utilisation of what is not allowed
 
 
 def _as_heavy(devices: Floats, mass: float) -> Floats:
-    """Devices of another mass [kg] with the same frequencies and damping ratios."""
-    return devices * (mass / devices[:, :1])
+    """Devices of another mass [kg] with the same frequencies and damping ratios; no spring is a very soft one."""
+    return np.maximum(devices * (mass / devices[:, :1]), np.finfo(float).tiny)
 
 
 def _in_threads(function: Callable[[ServedMember], Floats], members: Sequence[ServedMember]) -> list[Floats]:

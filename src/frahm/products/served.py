@@ -114,7 +114,7 @@ class ServedMember:
     def space(self, family: str, mass: float) -> DesignSpace:
         """Devices of a family and a mass [kg] that may suit it, as `frahm.design_absorber` would look for them."""
         ratio = min(mass / self.case.pipe.mass, 1.0)
-        settings = DesignSettings(family=family, mass_ratio=ratio, force_margin=self.force_margin)  # type: ignore[arg-type]
+        settings = DesignSettings(family=family, mass_ratio=ratio, force_margin=self.force_margin)
         return design_space(self.screening.host, self.case.pipe.mass, family, settings)
 
 
@@ -122,7 +122,7 @@ def served_member(screened: ScreenedMember, mass_ratio: float, force_margin: flo
     """A member on which devices up to a mass ratio are tried."""
     case = screened.case
     objective = "peak" if case.fatigue is None or case.climate is None else "damage"
-    settings = DesignSettings(objective=objective, mass_ratio=mass_ratio, force_margin=force_margin)  # type: ignore[arg-type]
+    settings = DesignSettings(objective=objective, mass_ratio=mass_ratio, force_margin=force_margin)
     problem = Problem.of(case, settings)
     screening = problem.screening(sorted({1.0, force_margin}))
     base, shares = _limits(case)
@@ -130,9 +130,7 @@ def served_member(screened: ScreenedMember, mass_ratio: float, force_margin: flo
         np.full(len(part.conditions.forces), _stress_by_motion(screened, mode))
         for part, mode in zip((screening, *screening.others), _modes(problem), strict=True)
     ])  # fmt: skip
-    return ServedMember(
-        screened, mass_ratio * case.pipe.mass, problem, screening, force_margin, shares, base, stress
-    )
+    return ServedMember(screened, mass_ratio * case.pipe.mass, problem, screening, force_margin, shares, base, stress)
 
 
 def _modes(problem: Problem) -> list[int]:
@@ -151,7 +149,7 @@ def _stress_by_motion(screened: ScreenedMember, mode: int) -> float:
 
 
 def _limits(case: Case) -> tuple[Floats, Floats]:
-    """Utilisation of every limit at rest (L,), and by a unit of each of `SIZES` (L, 4): all limits are linear in them."""
+    """Utilisation of every limit at rest (L,), and by a unit of each of `SIZES` (L, 4), in which all are linear."""
     carrying = with_design(case, DesignedAbsorber(0.01, 0.0, 1.0, 0.0))
 
     def ratios(**sizes: float) -> Floats:
