@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -14,7 +15,7 @@ from frahm.products.search import Expected, ProductSearch
 from frahm.products.served import ServedMember, served_member
 from frahm.products.study import ProductStudy
 from frahm.screening import FAIL as FAILS_ALONE
-from frahm.screening import MemberScreen, screen_members
+from frahm.screening import MemberScreen, screen_members, share
 
 Progress = Callable[[str, int, int], None]
 MOST_KINDS = 12
@@ -38,9 +39,10 @@ def design_products(
     curve up to the force margin; then the worst motion and the damage of members with their device are those of
     `frahm run`, over all attractors.
 
-    A product that the closed form expects to fail, and to do no better than the tuned one of as many kinds, is checked
-    at the member that binds alone; once a member of any product exceeds what a verified rival comes to, its others are
-    left unchecked. Both are reported as unverified, with the reason.
+    Members expected to be used most are checked first. Once one of them is used as much as any member is with a product
+    of as many kinds that was checked before, the others are left to the closed form, and reported as unverified with
+    the reason; of a family that was asked for, only if that member fails. The tuned products, whose response is exact,
+    come first.
 
     Parameters
     ----------
@@ -72,7 +74,7 @@ def design_products(
     members = tuple(
         served_member(one, mass_ratio, force_margin) for one in screen.judged if one.verdict.word == FAILS_ALONE
     )
-    work = _Work(members, families, counts, progress)
+    work = _Work(members, families, counts, family, progress)
     interrupted = work.interrupted_run() if members else False
     return ProductStudy(screen, members, tuple(work.found), family, counts, mass_ratio, force_margin, interrupted)
 
@@ -117,9 +119,11 @@ class _Work:
         members: tuple[ServedMember, ...],
         families: tuple[str, ...],
         counts: tuple[int, ...],
+        asked: str | None,
         progress: Progress | None,
     ):
-        self.members, self.families, self.counts, self.progress = members, families, counts, progress
+        self.members, self.families, self.counts = members, families, counts
+        self.asked, self.progress = asked, progress
         self.found: list[Product] = []
         self.searches = {family: ProductSearch(members, family) for family in families} if members else {}
         self.known: dict[str, list[Expected]] = {family: [] for family in families}
@@ -148,14 +152,14 @@ class _Work:
         best = self.searches[family].best(count, [*self.known[family][-1:], *beside])
         self.known[family].append(best)
         product = product_of(family, count, self.members, best.devices, best.takes, best.used)
-        rivals = [one for one in self.found if one.count == count and one.verified]
+        rivals = [one for one in self.found if one.count == count and one.complete]
         rival = min(rivals, key=lambda one: one.worst, default=None)
         same = next((one for one in self.found if one.count == count and _is_same(one, product)), None)
         self.found.append(replace(product, members=same.members) if same else self._checked(product, rival, done))
 
     def _checked(self, product: Product, rival: Product | None, done: int) -> Product:
         """The product with its members against all attractors, those expected to be used most first."""
-        bar = max(1.0, _NO_BETTER * rival.worst) if rival else float("inf")
+        bar = _NO_BETTER * rival.worst if rival else math.inf
         lost = ""
         fitted: list[FittedMember] = []
         for number, one in enumerate(product.members):
@@ -165,8 +169,12 @@ class _Work:
             self._step(f"{product.title}: {one.name}, {number + 1} of {len(product.members)}", done)
             now = replace(one, check=checked(one.case))
             fitted.append(now)
-            if rival and now.verdict == FAIL and now.utilisation >= bar:
-                lost = f"By the closed form alone: {now.name} fails, and {rival.title} do as well or better."
+            decides = now.verdict == FAIL or product.family != self.asked
+            if rival and decides and now.utilisation >= bar:
+                lost = (
+                    f"By the closed form alone: {now.name} is used {share(now.utilisation)} by all its attractors, and"
+                    f" with {rival.title} no member is used more than {share(rival.worst)}."
+                )
         return replace(product, members=in_order(fitted))
 
 

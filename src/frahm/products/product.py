@@ -103,7 +103,7 @@ class FittedMember:
     @property
     def verdict(self) -> str:
         """FAIL if a limit is exceeded, PASS if all are kept and that is verified."""
-        if self.check is not None and self.utilisation > 1:
+        if self.check is not None and self.check.exceeds:
             return FAIL
         return PASS if self.verified else NOT_VERIFIED
 
@@ -152,13 +152,18 @@ class Product:
 
     @property
     def binds(self) -> FittedMember:
-        """The member that is used most; of those checked, if one of them fails."""
+        """The member that is used most, of those that were checked."""
         return self.members[0]
 
     @property
     def worst(self) -> float:
         """Largest utilisation of a member [-]."""
         return self.binds.utilisation
+
+    @property
+    def complete(self) -> bool:
+        """Whether every member was checked against all attractors."""
+        return all(one.check is not None for one in self.members)
 
     @property
     def verified(self) -> bool:
@@ -219,5 +224,5 @@ def product_of(family: str, count: int, members: tuple[ServedMember, ...], devic
 
 
 def in_order(fitted: list[FittedMember]) -> tuple[FittedMember, ...]:
-    """The most used first; one that is known to fail stands before any that was not asked."""
-    return tuple(sorted(fitted, key=lambda one: (one.verdict != FAIL, -one.utilisation)))
+    """The most used first; of members that were not asked none stands before those that were."""
+    return tuple(sorted(fitted, key=lambda one: (one.check is None, -one.utilisation)))

@@ -125,7 +125,7 @@ def served_member(screened: ScreenedMember, mass_ratio: float, force_margin: flo
     settings = DesignSettings(objective=objective, mass_ratio=mass_ratio, force_margin=force_margin)
     problem = Problem.of(case, settings)
     screening = problem.screening(sorted({1.0, force_margin}))
-    base, shares = _limits(case)
+    base, shares = _limits(screened)
     stress = np.concatenate([
         np.full(len(part.conditions.forces), _stress_by_motion(screened, mode))
         for part, mode in zip((screening, *screening.others), _modes(problem), strict=True)
@@ -148,16 +148,30 @@ def _stress_by_motion(screened: ScreenedMember, mode: int) -> float:
     return max(known, default=0.0)
 
 
-def _limits(case: Case) -> tuple[Floats, Floats]:
-    """Utilisation of every limit at rest (L,), and by a unit of each of `SIZES` (L, 4), in which all are linear."""
+def _limits(screened: ScreenedMember) -> tuple[Floats, Floats]:
+    """Utilisation of every limit at rest (L,), and by a unit of each of `SIZES` (L, 4), in which all are linear.
+
+    At rest: by a static stress, and by winds outside all bands, which an absorber does not change.
+    """
+    case, outside = screened.case, _outside(screened)
     carrying = with_design(case, DesignedAbsorber(0.01, 0.0, 1.0, 0.0))
 
     def ratios(**sizes: float) -> Floats:
         row = dict.fromkeys(SIZES, 0.0) | sizes
-        return np.array([one.ratio for one in utilisations(carrying, row, None if case.fatigue is None else row)])
+        found = utilisations(carrying, row, None if case.fatigue is None else row)
+        return np.array([one.ratio + (outside if one.name == "damage" else 0.0) for one in found])
 
     base = ratios()
     return base, np.column_stack([ratios(**{name: 1.0}) - base for name in SIZES])
+
+
+def _outside(screened: ScreenedMember) -> float:
+    """Utilisation by damage of winds outside all bands without an absorber [-]."""
+    case = screened.case
+    if screened.findings is None or screened.findings.damage is None or case.fatigue is None:
+        return 0.0
+    limit = 1.0 if case.limits is None else case.limits.damage
+    return float(case.fatigue.design_fatigue_factor * screened.findings.damage["outside"] / limit)
 
 
 def hull(spaces: list[DesignSpace]) -> DesignSpace:

@@ -59,7 +59,7 @@ class ProductStudy:
             return min(passing, key=lambda one: (len(one.kinds), one.worst))
         best: Product | None = None
         for one in own:  # fewer kinds come first, and the tuned ones before the others
-            better = best is None or (_lost(best), _AS_GOOD * best.worst) > (_lost(one), one.worst)
+            better = best is None or (not best.complete, _AS_GOOD * best.worst) > (not one.complete, one.worst)
             best = one if better else best
         return best
 
@@ -130,8 +130,3 @@ class ProductStudy:
             known = "verified" if one.verified else "not verified"
             lines.append(f"  {one.title}: {share(one.worst)} ({one.binds.name}), {known}")
         return "\n".join(lines)
-
-
-def _lost(product: Product) -> bool:
-    """Whether a product was given up because another does better."""
-    return any(one.check is None for one in product.members)

@@ -14,7 +14,9 @@ from frahm.products import FAIL, NOT_VERIFIED, PASS, designing
 from frahm.products.checking import checked
 from frahm.products.search import ProductSearch
 from frahm.products.served import served_member
+from frahm.readable import YEAR
 from frahm.systems import build_system
+from frahm.time_integration import integrate_batch
 
 MARGIN = 1.05
 
@@ -166,8 +168,7 @@ def test_a_sink_that_fails_beside_a_better_rival_is_given_up_with_the_reason(mon
 
     def first_is_bad(case):
         asked.append(case)
-        found = checked(case.without_absorbers() if case.absorbers[0].law.kind == "cubic" else case)
-        return found
+        return checked(case.without_absorbers() if case.absorbers[0].law.kind == "cubic" else case)
 
     monkeypatch.setattr(designing, "checked", first_is_bad)
     study = frahm.design_products(rows, 1, family="sink")
@@ -179,3 +180,49 @@ def test_a_sink_that_fails_beside_a_better_rival_is_given_up_with_the_reason(mon
     assert all("1 kind of tuned mass damper" in text for text in sink.unverified)
     assert study.best is sink  # of the family asked for
     assert study.fails
+    known = {one.name: one for one in sink.members}
+    assert known[sink.binds.name].check is not None
+
+
+def test_what_winds_outside_all_bands_do_counts():
+    """A strut of the example: the absorber changes nothing in winds that excite no mode, and the search knows."""
+    row = {
+        "name": "RS-601", "diameter": 0.2191, "wall thickness": 0.0063, "length": 11.2, "ends": "pinned",
+        "damping ratio": 0.003, "weibull scale": 7.5, "weibull shape": 2.0, "design life": YEAR, "s-n curve": "F1",
+        "stress concentration": 1.0, "design fatigue factor": 3.0,
+    }  # fmt: skip
+    (one,) = served(row)
+    screened, outside = one.screened, 3 * one.screened.findings.damage["outside"]
+    nothing = np.array([[1e-9, 1e-9, 0.0, 1e-12, 0.0]])
+    assert outside > 0.3
+    assert one.utilisation(nothing)[0] == pytest.approx(screened.utilisation + outside, rel=0.03)
+    device = tuned(one, damping=0.1)
+    check = checked(one.with_device(device))
+    assert check.utilisation == pytest.approx(one.utilisation(device[None])[0], rel=0.01)
+    assert check.utilisation > outside
+    assert check.unverified == ()
+    small = np.array([tuned(one, ratio=1.0, damping=0.05, mass=mass) for mass in np.geomspace(1e-4, 1, 40)])
+    poor_used = one.utilisation(small)
+    at = int(np.argmin(np.abs(poor_used - 1.2)))  # below the limit without those winds
+    poor = checked(one.with_device(small[at]))
+    assert not poor.exceeds
+    assert poor.utilisation > 1
+    assert any("Winds outside all bands" in doubt for doubt in poor.unverified)
+
+
+def test_random_states_in_random_winds_never_exceed_what_a_sink_promises():
+    (one,) = served(member("A1", 25.0, 0.003, **{"damping ratio": 0.01}), mass_ratio=0.05)
+    (device,) = ProductSearch((one,), "sink").best(1).devices
+    case = one.with_device(device).with_analysis(samples=8)
+    promised = checked(case)
+    assert promised.unverified == ()
+    rng, within, count = np.random.default_rng(7), operating_range(case), 96
+    W = rng.uniform(*within.frequency, count)
+    lift = np.array([within.lift_factor(w) for w in W])
+    sizes = np.array([[3.0, 3.0, 3.0, 3.0]]) * promised.motion.relative_peak * np.array([[1, one.frequency] * 2])
+    states = rng.uniform(-1, 1, (count, 4)) * sizes
+    batch = integrate_batch(
+        build_system(case), frequency=W, initial_states=states, periods=600, window=60, force_scale=lift
+    )
+    assert np.max(batch.pipe_peak) <= promised.motion.pipe_peak * (1 + 1e-3)
+    assert np.max(batch.pipe_peak) > 0.8 * promised.motion.pipe_peak  # and the attack comes near it
