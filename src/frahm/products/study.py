@@ -99,11 +99,11 @@ class ProductStudy:
         if best.passes:
             lets = "lets" if len(best.kinds) == 1 else "let"
             return f"{best.title} {lets} {served} pass; {best.binds.name} is used most, {share(best.worst)}."
-        known = "" if best.verified else ", not verified"
+        known = "" if best.binds.verified else ", not verified"
         what = "fails" if best.binds.verdict == FAIL else "is not known to pass"
-        number = f"no {max(self.counts)} kinds" if max(self.counts) > 1 else "no single kind"
+        number = f"no {max(self.counts)} kinds let" if max(self.counts) > 1 else "no single kind lets"
         return (
-            f"With absorbers of at most {self.mass_ratio:.3g} of a member's mass {number} let all of {served} pass."
+            f"With absorbers of at most {self.mass_ratio:.3g} of a member's mass {number} {served} pass."
             f" The best there is: {best.title}; {best.binds.name} binds, {what} and is used {share(best.worst)}{known}."
         )
 

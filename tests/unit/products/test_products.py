@@ -126,6 +126,9 @@ def test_the_fewest_kinds_with_which_all_pass():
     for one in study.best.members:
         assert one.check.motion.pipe_peak == frahm.worst_case(one.case).pipe_peak
     assert "2 kinds of tuned mass damper let the 2 members that fail alone pass" in study.sentence
+    for thing in (study, study.best, study.best.kinds[0]):
+        assert repr(thing).count("\n") < 12
+        assert len(repr(thing)) < 1500
 
 
 def test_products_that_cannot_satisfy_all_name_the_member_that_binds():
@@ -226,3 +229,21 @@ def test_random_states_in_random_winds_never_exceed_what_a_sink_promises():
     )
     assert np.max(batch.pipe_peak) <= promised.motion.pipe_peak * (1 + 1e-3)
     assert np.max(batch.pipe_peak) > 0.8 * promised.motion.pipe_peak  # and the attack comes near it
+
+
+def test_an_interruption_keeps_the_products_that_are_known():
+    rows = [member("A1", 21.0, 0.0025), member("A2", 27.0, 0.0025)]
+
+    def stopped_at(step):
+        def progress(title, done, total):
+            if done == step:
+                raise KeyboardInterrupt
+
+        return frahm.design_products(rows, (1, 3), family="tuned", progress=progress)
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped_at(0)
+    study = stopped_at(1)
+    assert study.interrupted
+    assert [one.count for one in study.products] == [1]
+    assert not study.verified
