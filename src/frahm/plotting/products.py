@@ -42,8 +42,8 @@ def products_figure(product: Mapping[str, Any]) -> Figure:
     """Largest utilisation of every member over its natural frequency; hollow where it is not verified."""
     figure = new_figure(160, 100)
     axes = figure.subplots()
-    rows = product["members"]
-    bare = [(row["natural_frequency_hz"], row["utilisation_without"]) for row in rows]
+    rows = [row for row in product["members"] if row["utilisation"] is not None]
+    bare = [(row["natural_frequency_hz"], row["utilisation_without"]) for row in product["members"]]
     axes.plot(*zip(*bare, strict=True), "x", color=GREY, markersize=5, label="without an absorber")
     for row in rows:
         ends = row["utilisation_without"], max(row["utilisation"], _LEAST)
@@ -59,7 +59,7 @@ def products_figure(product: Mapping[str, Any]) -> Figure:
                           markerfacecolor=colour if verified else "white")  # fmt: skip
     axes.axhline(1.0, color=INK, linewidth=1.0, label="limit")
     axes.set(xscale="log", yscale="log", xlabel="natural frequency [Hz]", ylabel="largest utilisation of a limit [-]")
-    _label_frequencies(axes.xaxis, [row["natural_frequency_hz"] for row in rows])
+    _label_frequencies(axes.xaxis, [row["natural_frequency_hz"] for row in product["members"]])
     decade_axis(axes.yaxis)
     legend_below(figure, 3)
     return figure

@@ -15,6 +15,7 @@ from frahm.products.checking import MemberCheck
 from frahm.products.served import ServedMember
 
 PASS, FAIL, NOT_VERIFIED = "PASS", "FAIL", "NOT VERIFIED"
+_UNSUITED = "No kind is light enough for it and without a detached curve up to the force margin."
 DEVICES = {"tuned": "tuned mass damper", "sink": "sink", "mixed": "mixed"}
 
 
@@ -93,12 +94,13 @@ class FittedMember:
     @property
     def unverified(self) -> tuple[str, ...]:
         """What speaks against its utilisation."""
-        return (self.why_not,) if self.check is None else self.check.unverified
+        found = (self.why_not,) if self.check is None else self.check.unverified
+        return found if math.isfinite(self.expected) else (_UNSUITED, *found)
 
     @property
     def verified(self) -> bool:
         """Whether all attractors were asked and nothing speaks against the answer."""
-        return self.check is not None and not self.check.unverified and math.isfinite(self.utilisation)
+        return self.check is not None and not self.unverified and math.isfinite(self.utilisation)
 
     @property
     def verdict(self) -> str:

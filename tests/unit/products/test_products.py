@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 
 import frahm
+from frahm.analysis import plain
 from frahm.design import DesignSettings, verified_designs
 from frahm.harmonic_balance import linear_response
 from frahm.loads import operating_range
+from frahm.plotting.products import products_figure
 from frahm.products import FAIL, NOT_VERIFIED, PASS, designing
 from frahm.products.checking import checked
+from frahm.products.product import product_of
 from frahm.products.search import ProductSearch
 from frahm.products.served import served_member
 from frahm.readable import YEAR
@@ -247,3 +250,16 @@ def test_an_interruption_keeps_the_products_that_are_known():
     assert study.interrupted
     assert [one.count for one in study.products] == [1]
     assert not study.verified
+
+
+def test_a_member_that_no_kind_suits_is_never_verified():
+    (one,) = served(member("A1", 25.0))
+    device = tuned(one, mass=2.0)  # twice as heavy as it may be
+    used = one.utilisation(device[None])
+    product = product_of("tuned", 1, (one,), device[None], np.array([0]), used)
+    assert np.isinf(used[0])
+    fitted = replace(product.members[0], check=checked(one.with_device(device)))
+    assert fitted.check.unverified == ()
+    assert fitted.verdict == NOT_VERIFIED
+    assert "light enough" in fitted.unverified[0]
+    assert products_figure(plain(product.row())) is not None
