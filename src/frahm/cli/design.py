@@ -22,7 +22,7 @@ Range = tuple[float, float]
 
 def design(
     case: Annotated[
-        str | None, typer.Argument(metavar="[CASE]", help="Name of a built-in case, or a YAML or TOML file.")
+        str | None, typer.Argument(metavar="CASE", help="Name of a built-in case, or a YAML or TOML file.")
     ] = None,
     members: Annotated[
         str | None,
@@ -37,7 +37,9 @@ def design(
     objective: Annotated[
         str | None, typer.Option(help="peak (default), rms, expected or damage: what is made small.")
     ] = None,
-    family: Annotated[str | None, typer.Option(help="sink (cubic spring, default), tuned (linear) or mixed.")] = None,
+    family: Annotated[
+        str | None, typer.Option(help="sink (cubic spring, default), tuned (linear) or mixed; of --members all.")
+    ] = None,
     mass_ratio: Annotated[
         float | None, typer.Option(help="Mass over that of the pipe; by default the case's absorber, or 0.02.")
     ] = None,
