@@ -16,7 +16,7 @@ from frahm.products.served import ServedMember
 
 PASS, FAIL, NOT_VERIFIED = "PASS", "FAIL", "NOT VERIFIED"
 _UNSUITED = "No kind is light enough for it and without a detached curve up to the force margin."
-DEVICES = {"tuned": "tuned mass damper", "sink": "sink", "mixed": "mixed"}
+DEVICES = {"tuned": "tuned mass damper", "sink": "sink", "mixed": "mixed absorber"}
 
 
 @dataclass(frozen=True, eq=False)
