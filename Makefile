@@ -6,7 +6,7 @@ RUNS := $(VENV)/.runs
 STAMP := $(VENV)/.set-up
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
-.PHONY: setup run reproduce test bounds fuzz attack lint types bench docs scatter-study where-a-sink-wins examples validation clean
+.PHONY: setup run reproduce test bounds fuzz attack lint types bench docs scatter-study products-study where-a-sink-wins examples validation clean
 
 setup: $(STAMP)
 
@@ -58,6 +58,9 @@ docs: setup
 
 scatter-study: setup
 	$(BIN)/python examples/scatter_study.py $(SCATTER)
+
+products-study: setup
+	$(BIN)/python examples/products_study.py docs/examples
 
 where-a-sink-wins: setup
 	$(BIN)/python examples/where_a_sink_wins.py

@@ -210,6 +210,7 @@ _ROOMS = {
     "frahm.response": "Responses", "frahm.harmonic_balance": "Periodic responses",
     "frahm.time_integration": "Integration", "frahm.attractors": "Attractors", "frahm.assessment": "Fatigue",
     "frahm.design": "Design", "frahm.screening": "Members",
+    "frahm.products": "Products",
     "frahm.sweep": "Parameter studies", "frahm.errors": "Errors",
 }  # fmt: skip
 

@@ -67,6 +67,8 @@ _PUBLIC = {
     "screen_members": "frahm.screening",
     "MemberScreen": "frahm.screening",
     "ScreenedMember": "frahm.screening",
+    "design_products": "frahm.products",
+    "ProductStudy": "frahm.products",
     "sweep": "frahm.sweep",
     "Study": "frahm.sweep",
     "SweepWarning": "frahm.sweep",

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 import frahm
+from frahm.products.search import ProductSearch
+from frahm.products.served import served_member
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"
@@ -173,3 +175,24 @@ def test_the_notebook(capsys, monkeypatch):
     said = capsys.readouterr().out
     assert len(SPECIAL.findall(said)) == 6
     assert float(re.search(r"displacement: ([\d.]+) m", said)[1]) == pytest.approx(0.0170, abs=2e-4)
+
+
+def test_the_spread_from_which_a_sink_serves_many_pipes_better_is_as_the_documentation_says():
+    """By the closed form: what the table of docs/products.md says, and what was kept for it by all attractors."""
+    space = runpy.run_path(str(EXAMPLES / "products_study.py"))
+    table = {row["spread"]: row for row in json.loads((ROOT / "docs/examples/products-study.json").read_text())}
+    wins = {}
+    for spread in (0.2, 0.5):
+        screen = frahm.screen_members(space["family_of_pipes"](spread))
+        members = [served_member(one, 0.02, 1.05) for one in screen]
+        worst = {family: ProductSearch(members, family).best(1).worst for family in ("tuned", "sink")}
+        wins[spread] = worst["sink"] < worst["tuned"]
+        for family, value in worst.items():
+            assert table[spread][family]["worst"] == pytest.approx(value, rel=0.03)
+    assert wins == {0.2: False, 0.5: True}
+    page = (ROOT / "docs" / "products.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (\d+) % \| ([\d.]+)[^|]*\| ([\d.]+)[^|]*\| ([\d.]+)", page, re.MULTILINE)
+    assert [int(row[0]) for row in rows] == [round(100 * spread) for spread in table]
+    for row, one in zip(rows, table.values(), strict=True):
+        for text, family in zip(row[1:], ("tuned", "mixed", "sink"), strict=True):
+            assert float(text) == pytest.approx(one[family]["worst"], rel=6e-3)

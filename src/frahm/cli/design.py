@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from frahm.cli.ahead import compiled_ahead
-from frahm.cli.cases import CaseArgument
 from frahm.cli.guarded import ExitCode, held_interrupts
 from frahm.cli.notes import say_notes
+from frahm.cli.products import design_members, number_or_range
 from frahm.errors import ParameterError
 
 if TYPE_CHECKING:
@@ -21,12 +21,25 @@ Range = tuple[float, float]
 
 
 def design(
-    case: CaseArgument,
+    case: Annotated[
+        str | None, typer.Argument(metavar="CASE", help="Name of a built-in case, or a YAML or TOML file.")
+    ] = None,
+    members: Annotated[
+        str | None,
+        typer.Option(
+            metavar="MEMBERS", help="In place of CASE: a table of members as for frahm screen, all that fail served."
+        ),
+    ] = None,
+    products: Annotated[
+        str | None, typer.Option(help="Kinds of absorber for the members: a number, or a range; 1-3.")
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder to write to; by default out/<name>-design.")] = None,
     objective: Annotated[
         str | None, typer.Option(help="peak (default), rms, expected or damage: what is made small.")
     ] = None,
-    family: Annotated[str | None, typer.Option(help="sink (cubic spring, default), tuned (linear) or mixed.")] = None,
+    family: Annotated[
+        str | None, typer.Option(help="sink (cubic spring, default), tuned (linear) or mixed; of --members all.")
+    ] = None,
     mass_ratio: Annotated[
         float | None, typer.Option(help="Mass over that of the pipe; by default the case's absorber, or 0.02.")
     ] = None,
@@ -64,8 +77,35 @@ def design(
 ) -> None:
     """Design the best absorber for a case, verify it and compare it with the tuned mass damper.
 
-    What is asked for stands in the section design of the case; options take its place.
+    What is asked for stands in the section design of the case; options take its place. With --members: the fewest
+    kinds of absorber with which every member of a table passes that fails alone.
     """
+    if masses is not None and mass_ratio is not None:
+        raise ParameterError("--masses", masses, "left out where --mass-ratio is given")
+    given: dict[str, Any] = {
+        "objective": objective, "family": family, "scatter": scatter, "quantile": quantile,
+        "force_margin": force_margin, "stroke": stroke, "spring_length": spring_length,
+        "spring_stress": spring_stress, "kappa": kappa, "linear": linear, "quintic": quintic, "xi2": xi2,
+        "count": None if count is None else number_or_range("--count", count), "devices": devices,
+        "mass_shares": None if mass_shares is None else _shares(mass_shares),
+        "position": position, "wind": wind, "samples": samples, "seed": seed,
+    }  # fmt: skip
+    asked = {name: value for name, value in given.items() if value is not None}
+    if members is not None:
+        beside = {"CASE": case, "masses": masses, **asked}
+        design_members(members, products, mass_ratio, out, beside, force=force)
+        return
+    if products is not None:
+        raise ParameterError("--products", products, "left out where there is no --members")
+    if case is None:
+        raise ParameterError("CASE", "nothing", "a case, or a table of members as --members MEMBERS")
+    _design_case(case, masses or mass_ratio, out, asked, force=force)
+
+
+def _design_case(
+    case: str, ratio: float | Range | None, out: Path | None, asked: dict[str, Any], *, force: bool
+) -> None:
+    """The best absorber for one case, on disk and in a few lines."""
     from frahm.case import load_case
     from frahm.cli.folder import claim_folder, default_folder
     from frahm.cli.progress import shown_progress
@@ -73,17 +113,6 @@ def design(
     loaded = load_case(case)
     own = default_folder(loaded)
     folder = own.with_name(f"{own.name}-design") if out is None else out
-    if masses is not None and mass_ratio is not None:
-        raise ParameterError("--masses", masses, "left out where --mass-ratio is given")
-    given: dict[str, Any] = {
-        "objective": objective, "family": family, "scatter": scatter, "quantile": quantile,
-        "force_margin": force_margin, "stroke": stroke, "spring_length": spring_length,
-        "spring_stress": spring_stress, "kappa": kappa, "linear": linear, "quintic": quintic, "xi2": xi2,
-        "count": None if count is None else _counts(count), "devices": devices,
-        "mass_shares": None if mass_shares is None else _shares(mass_shares),
-        "position": position, "wind": wind, "samples": samples, "seed": seed,
-    }  # fmt: skip
-    asked = {name: value for name, value in given.items() if value is not None}
     say_notes(loaded)
     with shown_progress() as progress, compiled_ahead():
         progress("loading", 0, 1)
@@ -93,22 +122,13 @@ def design(
             from frahm.design import check_design, design_absorber, save_design, step_weights
             from frahm.report import write_design_report
 
-        check_design(loaded, masses or mass_ratio, **asked)  # before anything is written
+        check_design(loaded, ratio, **asked)  # before anything is written
         claim_folder(folder, loaded, force=force)
-        progress.weigh(step_weights(loaded, masses or mass_ratio, **asked))
-        study = design_absorber(loaded, masses or mass_ratio, progress=progress, **asked)
+        progress.weigh(step_weights(loaded, ratio, **asked))
+        study = design_absorber(loaded, ratio, progress=progress, **asked)
         save_design(study, folder)
         write_design_report(study, folder)
     _conclude(study, folder)
-
-
-def _counts(text: str) -> int | tuple[int, int]:
-    """A number, or two of them with a hyphen between."""
-    parts = text.replace(" ", "").split("-")
-    if len(parts) in (1, 2) and all(part.isdecimal() for part in parts):
-        numbers = tuple(int(part) for part in parts)
-        return numbers[0] if len(numbers) == 1 else (numbers[0], numbers[1])
-    raise ParameterError("--count", text, "a whole number, or a range of them such as 1-3")
 
 
 def _shares(text: str) -> str | tuple[float, ...]:

@@ -12,11 +12,11 @@ from frahm.files import json_or_nothing
 if TYPE_CHECKING:
     from frahm.case import Case
 
-_OWN_FILES = ("summary.json", "report.html", "report.pdf", "results.nc", "best.yaml", "members.csv")
+_OWN_FILES = ("summary.json", "report.html", "report.pdf", "results.nc", "best.yaml", "members.csv", "products.csv")
 
 _OWN_FIGURES = (
     "response-*", "motion-*", "slow-manifold*", "basin-map*", "unsteady-wind*", "fatigue*", "design-*", "decision*",
-    "members-*",
+    "members-*", "products-*",
 )  # fmt: skip
 
 
@@ -51,15 +51,16 @@ def claim_folder(folder: Path, case: Case, *, force: bool) -> None:
         case.to_yaml(folder / "case.yaml")
 
 
-def claim_members_folder(folder: Path, digest: str, *, force: bool) -> None:
-    """Make sure `folder` exists, can be written, and holds nothing but a screening of this very table.
+def claim_members_folder(folder: Path, digest: str, summary: dict[str, Any] | None, *, force: bool) -> None:
+    """Make sure `folder` exists, can be written, and holds nothing but what was made of this very table.
+
+    `summary` is what the folder says if it holds work of the same command; None otherwise.
 
     Raises
     ------
     ParameterError
         If it is a file, cannot be written, or holds anything else and `force` is not set.
     """
-    summary = members_summary(folder)
     same = summary is not None and summary["results"]["provenance"]["digest"] == digest
     if _occupied(folder) and not same:
         _take(folder, force, "a new or empty folder, or one of the same table")
@@ -77,6 +78,21 @@ def members_summary(folder: Path) -> dict[str, Any] | None:
             "sentence": str(summary["results"]["sentence"]), "members": [*summary["results"]["members"]],
             "not_judged": [*summary["results"]["not_judged"]],
             "provenance": {"digest": str(summary["results"]["provenance"]["digest"])},
+        }}  # fmt: skip
+
+
+def products_summary(folder: Path) -> dict[str, Any] | None:
+    """Summary of a folder that `frahm design --members` wrote; None if the folder holds something else."""
+    from frahm.products.store import SCHEMA
+
+    summary = json_or_nothing(folder / "summary.json")
+    if not isinstance(summary, dict) or summary.get("schema") != SCHEMA:
+        return None
+    with door("DIR", str(folder), "a folder that `frahm design --members` wrote", "summary.json is damaged."):
+        results = summary["results"]
+        return {"unverified": [*summary["unverified"]], "results": {
+            "sentence": str(results["sentence"]), "products": [*results["products"]], "best": results["best"],
+            "provenance": {"digest": str(results["provenance"]["digest"])},
         }}  # fmt: skip
 
 

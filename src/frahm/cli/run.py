@@ -9,7 +9,7 @@ import typer
 
 from frahm.cli.ahead import compiled_ahead
 from frahm.cli.cases import CaseArgument
-from frahm.cli.folder import holds_design, members_summary
+from frahm.cli.folder import holds_design, members_summary, products_summary
 from frahm.cli.guarded import ExitCode, held_interrupts
 from frahm.cli.notes import say_notes
 from frahm.cli.terminal import say
@@ -59,7 +59,8 @@ def report(
     from frahm.analysis import load_analysis
     from frahm.report import REPORT_FILE, write_pdf, write_report
 
-    if pdf and (holds_design(folder) or members_summary(folder)):  # the report stays as it was written
+    kept = holds_design(folder) or members_summary(folder) or products_summary(folder)
+    if pdf and kept:  # the report stays as it was written
         path = folder / REPORT_FILE
     else:
         path = write_report(load_analysis(folder), folder)
@@ -71,10 +72,12 @@ def report(
 def show(folder: FolderArgument) -> None:
     """Print what a folder of results, or the store of a sweep, says."""
     from frahm.cli.design import stored_design_text
+    from frahm.cli.products import stored_products_text
     from frahm.cli.screen import stored_screen_text
     from frahm.cli.sweep import stored_sweep_text
 
-    text = stored_design_text(folder) or stored_screen_text(folder) or stored_sweep_text(folder)
+    stored = (stored_design_text, stored_screen_text, stored_products_text, stored_sweep_text)
+    text = next((found for found in (read(folder) for read in stored) if found), None)
     if text is not None:
         say(text)
         return

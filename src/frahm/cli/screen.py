@@ -49,7 +49,7 @@ def screen(
         names = [row.name for row in table.rows]
         for name in case or ():
             _check_name(name, names)
-        claim_members_folder(folder, table.digest, force=force)
+        claim_members_folder(folder, table.digest, members_summary(folder), force=force)
         progress.weigh([1.0] * len(table.rows))
         found = screen_members(table, progress=progress)
         wanted = wanted_members(found, case or ()) if cases is not None or case else []

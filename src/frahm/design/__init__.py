@@ -6,7 +6,10 @@ from frahm.design.effort import step_weights
 from frahm.design.finalists import FAR
 from frahm.design.objective import Objective
 from frahm.design.pareto import pareto_front
+from frahm.design.problem import Problem
+from frahm.design.screening import Screening
 from frahm.design.settings import DesignSettings
+from frahm.design.space import DesignSpace, design_space
 from frahm.design.store import design_summary, save_design
 from frahm.design.study import SIMPLEST_FIRST, DesignStudy, Rival
 
@@ -14,12 +17,16 @@ __all__ = [
     "FAR",
     "SIMPLEST_FIRST",
     "DesignSettings",
+    "DesignSpace",
     "DesignStudy",
     "DesignedAbsorber",
     "Objective",
+    "Problem",
     "Rival",
+    "Screening",
     "check_design",
     "design_absorber",
+    "design_space",
     "design_summary",
     "parameters_text",
     "pareto_front",

@@ -212,18 +212,28 @@ class Problem:
 
     def _tier(self, family: str, margin: float, place: float | None, sized_for: int | None, count: int) -> TierOne:
         host = self._host(place, count)
+        screening = self.screening(sorted({1.0, margin}) if family != "tuned" else [1.0], place, count)
+        settings = self.settings if family == self.settings.family else self.settings.for_rival()
+        sizing = host if sized_for is None else self._host(place, count, sized_for)
+        space = dataclasses.replace(design_space(sizing, self.case.pipe.mass, family, settings, count), position=place)
+        return TierOne(screening, space, self.objective, self.limits, known=self._known(family, space))
+
+    def screening(self, forces: list[float], place: float | None = None, count: int = 1) -> Screening:
+        """The pipe in every mode that winds excite, to be asked about designs in closed form at factors on the force.
+
+        Raises
+        ------
+        ParameterError
+            If an absorber sits where the governing mode does not move.
+        """
+        host = self._host(place, count)
         host.check_moves()
-        forces = sorted({1.0, margin}) if family != "tuned" else [1.0]
         others = tuple(
             self._screening(self._host(place, count, mode, speed), windows, forces, mode)
             for mode, speed, windows in self.others
         )
         governing = self._screening(host, self.windows, forces, self.case.pipe.governing_mode)
-        screening = dataclasses.replace(governing, others=others)
-        settings = self.settings if family == self.settings.family else self.settings.for_rival()
-        sizing = host if sized_for is None else self._host(place, count, sized_for)
-        space = dataclasses.replace(design_space(sizing, self.case.pipe.mass, family, settings, count), position=place)
-        return TierOne(screening, space, self.objective, self.limits, known=self._known(family, space))
+        return dataclasses.replace(governing, others=others)
 
     def _known(self, family: str, space: DesignSpace) -> Floats:
         """What the search for several absorbers of a family begins at besides: the best single ones, split."""

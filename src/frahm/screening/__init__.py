@@ -7,8 +7,10 @@ from frahm.screening.reading import EXAMPLE, MemberTable, read_members
 from frahm.screening.screen import MemberScreen, screen_members
 from frahm.screening.store import (
     SCHEMA,
+    cell,
     expecting,
     file_name,
+    file_names,
     members_csv,
     save_cases,
     save_screen,
@@ -33,8 +35,10 @@ __all__ = [
     "MemberTable",
     "MemberVerdict",
     "ScreenedMember",
+    "cell",
     "expecting",
     "file_name",
+    "file_names",
     "members_csv",
     "read_members",
     "save_cases",

@@ -91,12 +91,12 @@ def members_csv(screen: MemberScreen) -> str:
     writer.writerow([head for head, _ in CSV_COLUMNS])
     for member in screen.members:
         row = member.row()
-        writer.writerow([_cell(value(row)) for _, value in CSV_COLUMNS])
+        writer.writerow([cell(value(row)) for _, value in CSV_COLUMNS])
     return stream.getvalue()
 
 
-def _cell(value: Any) -> str:
-    """A cell; text that a spreadsheet would take for a formula begins with an apostrophe."""
+def cell(value: Any) -> str:
+    """A cell of a CSV file; text that a spreadsheet would take for a formula begins with an apostrophe."""
     if value is None:
         return ""
     if isinstance(value, float):
@@ -152,22 +152,27 @@ def save_cases(members: Iterable[ScreenedMember], folder: str | Path) -> list[Pa
         raise ParameterError(
             "--cases", str(folder), "a folder that can be written", hint=f"{error.strerror}."
         ) from None
-    paths: list[Path] = []
-    for member in members:
-        path = _unlike(folder / f"{file_name(member.name)}.yaml", paths)
+    chosen = list(members)
+    paths = [folder / name for name in file_names([member.name for member in chosen])]
+    for path, member in zip(paths, chosen, strict=True):
         member.case.to_yaml(path)
-        paths.append(path)
     return paths
+
+
+def file_names(names: Sequence[str]) -> list[str]:
+    """Names of case files, one a member, none like another whatever the case of its letters."""
+    taken: set[str] = set()
+    files: list[str] = []
+    for name in names:
+        stem, number = file_name(name), 2
+        found = stem
+        while found.lower() in taken:
+            found, number = f"{stem}-{number}", number + 1
+        taken.add(found.lower())
+        files.append(f"{found}.yaml")
+    return files
 
 
 def file_name(name: str) -> str:
     """A name with nothing in it that a file system could mind."""
     return re.sub(r"[^\w.-]+", "-", name).strip(".-")[:80] or "member"
-
-
-def _unlike(path: Path, others: Sequence[Path]) -> Path:
-    """A path that is none of the others, whatever the case of its letters."""
-    taken, number, found = {str(other).lower() for other in others}, 2, path
-    while str(found).lower() in taken:
-        found, number = path.with_name(f"{path.stem}-{number}{path.suffix}"), number + 1
-    return found
