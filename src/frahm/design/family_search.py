@@ -9,7 +9,7 @@ from frahm.case import FAMILIES
 from frahm.design.absorber import DesignedAbsorber
 from frahm.design.families import DEVICES, MIXED, devices
 from frahm.design.finalists import Finalist, finalists
-from frahm.design.search import Limits
+from frahm.design.search import DesignLimits
 from frahm.design.study import ALIKE, Rival
 from frahm.design.verification import Verification
 from frahm.design.work import DesignWork, rival_of
@@ -133,7 +133,7 @@ def _cornered(work: DesignWork, family: str, count: int) -> Rival | None:
 
 
 def family_finalists(
-    work: DesignWork, family: str, limits: Limits, count: int, wary: bool = False, sized_for: int | None = None
+    work: DesignWork, family: str, limits: DesignLimits, count: int, wary: bool = False, sized_for: int | None = None
 ) -> tuple[list[Finalist], list[str]]:
     """Finalists of a family under limits, and why others were discarded."""
     problem = work.problem

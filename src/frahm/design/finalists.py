@@ -18,7 +18,7 @@ from frahm.arrays import Floats
 from frahm.design.absorber import DesignedAbsorber, parameters_text
 from frahm.design.disturbance import Disturbance
 from frahm.design.exact import ExactJudgement, ExcitedMode, conditions_of, exact_birth, exact_judgement
-from frahm.design.search import BIRTH, GROWTH, STROKE, Corrections, Limits, TierOne
+from frahm.design.search import BIRTH, GROWTH, STROKE, ClosedFormSearch, Corrections, DesignLimits
 
 _ROUNDS = 6
 _SETTLED = 1e-3  # relative change of the exact peak that ends the rounds
@@ -54,10 +54,10 @@ class Finalist:
 
 
 def finalists(
-    tier: TierOne,
+    tier: ClosedFormSearch,
     modes_of: Callable[[DesignedAbsorber], Sequence[ExcitedMode]],
     disturbances: Sequence[Disturbance],
-    limits: Limits,
+    limits: DesignLimits,
     wary: bool = False,
 ) -> tuple[list[Finalist], list[str]]:
     """Designs that keep the limits by the exact equations, best first, and why others were discarded.
@@ -104,8 +104,8 @@ def finalists(
 
 
 def _judged(
-    tier: TierOne, row: Floats, judged: Floats, modes_of: Callable[[DesignedAbsorber], Sequence[ExcitedMode]],
-    disturbances: Sequence[Disturbance], limits: Limits, corrections: Corrections,
+    tier: ClosedFormSearch, row: Floats, judged: Floats, modes_of: Callable[[DesignedAbsorber], Sequence[ExcitedMode]],
+    disturbances: Sequence[Disturbance], limits: DesignLimits, corrections: Corrections,
 ) -> tuple[Finalist, float]:  # fmt: skip
     """The finalist, and the birth factor between what is known to be free and what is known not to be."""
     design = tier.space.absorber(row)
@@ -129,7 +129,7 @@ def _judged(
 
 
 def _corrected(
-    tier: TierOne, old: Corrections, judged: Floats, finalist: Finalist, birth: float, decay: float
+    tier: ClosedFormSearch, old: Corrections, judged: Floats, finalist: Finalist, birth: float, decay: float
 ) -> Corrections:
     """Corrections that make the closed form agree with the exact equations at this design."""
     exact = finalist.exact
@@ -150,7 +150,7 @@ def _jump(finalist: Finalist) -> str:
     )
 
 
-def _reason(finalist: Finalist, limits: Limits) -> str:
+def _reason(finalist: Finalist, limits: DesignLimits) -> str:
     return (
         f"{parameters_text(finalist.design)}: the exact equations have a detached curve at"
         f" {finalist.force_margin:.4g} times the force, short of {limits.force_margin:g}."

@@ -18,7 +18,7 @@ from frahm.design.exact import ExcitedMode, Windows
 from frahm.design.host import Host, Lift, host_of
 from frahm.design.objective import ClimateMean, Objective
 from frahm.design.screening import Screening
-from frahm.design.search import Corrections, Limits, TierOne
+from frahm.design.search import ClosedFormSearch, Corrections, DesignLimits
 from frahm.design.settings import DesignSettings
 from frahm.design.space import DesignSpace, design_space
 from frahm.errors import ParameterError
@@ -49,7 +49,7 @@ class Problem:
     wide : tuple of float
         Where the lift may lock in [rad/s].
     disturbances : list of Disturbance
-    limits : Limits
+    limits : DesignLimits
     tiers : dict
         Closed forms by family, force margin, the mode they are sized for and the number of absorbers.
     singles : dict
@@ -64,8 +64,8 @@ class Problem:
     within: OperatingRange
     wide: tuple[float, float]
     disturbances: list[Disturbance]
-    limits: Limits
-    tiers: dict[tuple[str, float, int | None, int], TierOne] = field(default_factory=dict)
+    limits: DesignLimits
+    tiers: dict[tuple[str, float, int | None, int], ClosedFormSearch] = field(default_factory=dict)
     singles: dict[str, list[DesignedAbsorber]] = field(default_factory=dict)
     _places: dict[tuple[str, int], float | None] = field(default_factory=dict)
     _tried: int = 0
@@ -100,7 +100,7 @@ class Problem:
         )  # fmt: skip
         gaps = [absorber.stops.gap for absorber in case.absorbers[: settings.counts[-1]] if absorber.stops is not None]
         stroke = min([settings.most_stroke, *gaps])
-        limits = Limits(settings.force_margin, stroke, False, settings.spring_length, settings.spring_stress)
+        limits = DesignLimits(settings.force_margin, stroke, False, settings.spring_length, settings.spring_stress)
         return cls(case, settings, objective, windows, others, asked, wide, conditions, limits)
 
     def check_host(self) -> None:
@@ -140,7 +140,7 @@ class Problem:
 
     def tier(
         self, family: str, margin: float | None = None, sized_for: int | None = None, count: int | None = None
-    ) -> TierOne:
+    ) -> ClosedFormSearch:
         """Closed form for a family, with the force given and with its margin, at its best place.
 
         Springs and dampers are looked for around what suits the governing mode, or another one of `others`. The number
@@ -210,13 +210,15 @@ class Problem:
         case = self.case_with(together([any_absorber] * count))
         return host_of(build_system(case if mode is None else governed(case, mode, speed)), count)
 
-    def _tier(self, family: str, margin: float, place: float | None, sized_for: int | None, count: int) -> TierOne:
+    def _tier(
+        self, family: str, margin: float, place: float | None, sized_for: int | None, count: int
+    ) -> ClosedFormSearch:
         host = self._host(place, count)
         screening = self.screening(sorted({1.0, margin}) if family != "tuned" else [1.0], place, count)
         settings = self.settings if family == self.settings.family else self.settings.for_rival()
         sizing = host if sized_for is None else self._host(place, count, sized_for)
         space = dataclasses.replace(design_space(sizing, self.case.pipe.mass, family, settings, count), position=place)
-        return TierOne(screening, space, self.objective, self.limits, known=self._known(family, space))
+        return ClosedFormSearch(screening, space, self.objective, self.limits, known=self._known(family, space))
 
     def screening(self, forces: list[float], place: float | None = None, count: int = 1) -> Screening:
         """The pipe in every mode that winds excite, to be asked about designs in closed form at factors on the force.

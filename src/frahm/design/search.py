@@ -57,7 +57,7 @@ class Corrections:
 
 
 @dataclass(frozen=True)
-class Limits:
+class DesignLimits:
     """What a design must keep.
 
     Attributes
@@ -103,13 +103,13 @@ class Ledger:
 
 
 @dataclass(eq=False)
-class TierOne:
+class ClosedFormSearch:
     """Search over a space; the coarse grid is judged once and used again under other corrections and limits."""
 
     screening: Screening
     space: DesignSpace
     objective: Objective
-    limits: Limits
+    limits: DesignLimits
     ledger: Ledger = field(default_factory=Ledger)
     known: Floats = field(default_factory=lambda: np.empty((0, 5)))  # designs the search starts from besides
 
@@ -170,7 +170,7 @@ class TierOne:
         screened = judged[self.peak_columns]
         return np.divide(self.peak_rows(peaks), screened, out=np.ones(len(screened)), where=screened > 0)
 
-    def predicted(self, judged: Floats, limits: Limits, corrections: Corrections) -> Floats:
+    def predicted(self, judged: Floats, limits: DesignLimits, corrections: Corrections) -> Floats:
         """Value of the objective expected of judged designs, (D,); infinite where a limit is not kept."""
         birth, stroke, stable, springs = _kept(judged, limits, corrections)
         values = self.values(judged, corrections)
@@ -186,13 +186,13 @@ class TierOne:
         by_force = (corrections.peaks * judged[:, columns]).reshape(len(judged), -1, len(conditions.disturbances))
         return self.objective.of_peaks(by_force.max(axis=1), unstable, np.nan_to_num(judged[:, CEILING]))
 
-    def reloaded(self, margin: float) -> TierOne:
+    def reloaded(self, margin: float) -> ClosedFormSearch:
         """The same with another margin on the force, and the grid judged before to start from."""
         other = copy.copy(self)
         other.screening = self.screening.reloaded(margin)
         return other
 
-    def best(self, limits: Limits, corrections: Corrections) -> tuple[Floats, float] | None:
+    def best(self, limits: DesignLimits, corrections: Corrections) -> tuple[Floats, float] | None:
         """Design (5 N,) with the least value expected, and that value; None if no design keeps the limits.
 
         Differential evolution from the best designs of the grid and the best that lie apart from them.
@@ -237,7 +237,7 @@ class TierOne:
             values = np.where(np.max(np.abs(units - point), axis=1) < _AVOIDED, np.inf, values)
         return values
 
-    def binding(self, limits: Limits) -> str:
+    def binding(self, limits: DesignLimits) -> str:
         """Which limit leaves no design: the one without which most designs remain."""
         birth, stroke, stable, springs = _kept(self.grid_judged, limits, Corrections())
         tests = {
@@ -271,7 +271,7 @@ class TierOne:
         return np.asarray(np.clip(members + off, 0.0, 1.0))
 
 
-def _kept(judged: Floats, limits: Limits, corrections: Corrections) -> tuple[np.ndarray, ...]:
+def _kept(judged: Floats, limits: DesignLimits, corrections: Corrections) -> tuple[np.ndarray, ...]:
     birth = judged[:, BIRTH] * corrections.birth >= limits.force_margin
     stroke = judged[:, STROKE] * corrections.stroke <= limits.stroke
     stable = judged[:, GROWTH] <= -corrections.damping if limits.stable else np.ones(len(judged), bool)

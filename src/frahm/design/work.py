@@ -33,7 +33,7 @@ _STROKE_SLACK = 1.001  # a stroke that is beyond its limit by less keeps it
 
 
 @dataclass(eq=False)
-class Found:
+class Findings:
     """What is known so far: an interruption leaves it as it is."""
 
     best: Rival | None = None
@@ -57,7 +57,7 @@ class DesignWork:
 
     def __init__(self, case: Case, settings: DesignSettings, progress: Progress | None):
         self.case, self.settings, self.progress = case, settings, progress
-        self.found = Found()
+        self.found = Findings()
         self.problem = Problem.of(case, settings)
         self.objective = self.problem.objective
         self.limits = self.problem.limits

@@ -14,7 +14,7 @@ from frahm.design.exact import conditions_of, exact_birth, exact_judgement
 from frahm.design.finalists import finalists
 from frahm.design.objective import Objective
 from frahm.design.problem import Problem
-from frahm.design.search import BIRTH, TierOne
+from frahm.design.search import BIRTH, ClosedFormSearch
 from frahm.design.settings import settings_for
 from frahm.design.verification import verification
 
@@ -83,13 +83,13 @@ def test_a_damper_is_sized_for_the_mode_that_moves_most():
 
 
 def test_every_design_judged_is_counted_whatever_the_limits_it_was_judged_under(monkeypatch):
-    judged, judge = [], TierOne.judge
+    judged, judge = [], ClosedFormSearch.judge
 
     def counted(self, designs):
         judged.append(len(designs))
         return judge(self, designs)
 
-    monkeypatch.setattr(TierOne, "judge", counted)
+    monkeypatch.setattr(ClosedFormSearch, "judge", counted)
     problem = problem_of()
     finalists(problem.tier("sink"), problem.modes_of, problem.disturbances, problem.limits)
     assert problem.screened == sum(judged) > 72 * 72
