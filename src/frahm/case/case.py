@@ -12,10 +12,10 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, ValidationError, field_validator, model_validator
 
-from frahm.case.absorber import Absorber
+from frahm.case.absorber import Absorber, CubicLaw, LinearLaw, PolynomialLaw
 from frahm.case.analysis import Analysis
 from frahm.case.climate import Climate
-from frahm.case.design import Design
+from frahm.case.design import MOST_ABSORBERS, Design
 from frahm.case.document import Document
 from frahm.case.fatigue import Fatigue
 from frahm.case.limits import Limits
@@ -250,6 +250,40 @@ class Case(CaseSection):
         new |= {} if position is None else {"position": position}
         return self._with({"absorbers": (*self.absorbers[:which], new, *self.absorbers[which + 1 :])})
 
+    def with_equal_parts(self, count: int, *, name: str | None = None) -> Case:
+        """Case with an absorber split into equal ones beside each other, of the same mass, spring and damper together.
+
+        Moving alike, they do what the one did; they may also part.
+
+        Parameters
+        ----------
+        count : int
+            Number of parts.
+        name : str, optional
+            Which absorber; by default the first.
+
+        Raises
+        ------
+        ParameterError
+            If there is no such absorber, or it is not a spring with a damper alone.
+        """
+        parts = check_count("count", count, at_least=1, at_most=MOST_ABSORBERS)
+        if not self.absorbers:
+            raise ParameterError("absorbers", "none", "an absorber that can be split")
+        which = self._position(name, None)
+        old = self.absorbers[which]
+        if parts == 1:
+            return self
+        taken = [absorber.name for absorber in self.absorbers]
+        new = [_share(old, parts)]
+        for number in range(2, parts + 1):
+            label = f"{old.name} {number}"
+            while label in taken:
+                label += "'"
+            taken.append(label)
+            new.append(new[0].model_copy(update={"name": label}))
+        return self._with({"absorbers": (*self.absorbers[:which], *new, *self.absorbers[which + 1 :])})
+
     def to_dict(self) -> dict[str, Any]:
         """Plain dictionary with every field in SI units; `load_case` gives an equal case back."""
         return self.model_dump(mode="json")
@@ -294,6 +328,20 @@ class Case(CaseSection):
                 raise ParameterError("name", name, "one of " + ", ".join(names), hint=hint)
             return names.index(name)
         return check_count("index", 0 if index is None else index, at_least=0, at_most=len(names) - 1)
+
+
+def _share(old: Absorber, parts: int) -> Absorber:
+    """One of so many equal parts of an absorber."""
+    law = old.law
+    if not isinstance(law, CubicLaw | LinearLaw | PolynomialLaw) or old.stops is not None or old.friction is not None:
+        allowed = "a cubic, linear or polynomial spring with a damper, without stops and friction"
+        raise ParameterError(f"absorbers({old.name})", law.kind, allowed)
+    if isinstance(law, PolynomialLaw):
+        spring: dict[str, Any] = {"coefficients": tuple(value / parts for value in law.coefficients)}
+    else:
+        spring = {"stiffness": law.stiffness / parts}
+    new = law.model_copy(update=spring | {"damping": law.damping / parts})
+    return old.model_copy(update={"mass": old.mass / parts, "law": new})
 
 
 def _changed(

@@ -111,6 +111,24 @@ class AxisValues(Quantity):
 
 
 @dataclass(frozen=True)
+class WholeAxisValues(AxisValues):
+    """The values of an axis of whole numbers."""
+
+    @property
+    def allowed(self) -> str:
+        """What is let in."""
+        return super().allowed + ", whole"
+
+    def read(self, value: Any) -> Any:
+        """Whole values."""
+        values = super().read(value)
+        for index, number in enumerate(values):
+            if number != int(number):
+                raise refusal(self.allowed, path=self._path(f"[{index}]"), value=number)
+        return values
+
+
+@dataclass(frozen=True)
 class Place(FieldType):
     """Where on the frequency axis: at a detuning, over a window of it, or as the wind has it."""
 

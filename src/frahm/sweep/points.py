@@ -43,6 +43,8 @@ class StudyPoint:
             case = case.with_wind(**wind)
         if absorber:
             case = case.with_absorber(**absorber, name=self.study.absorber or None)
+        if "count" in values:
+            case = case.with_equal_parts(int(values["count"]), name=self.study.absorber or None)
         return case
 
     @functools.cached_property

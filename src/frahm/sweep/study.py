@@ -13,11 +13,12 @@ import numpy as np
 from pydantic import Field, ValidationError, field_serializer, field_validator, model_validator
 
 from frahm.case import Case
+from frahm.case.design import MOST_ABSORBERS
 from frahm.case.problems import parameter_error
 from frahm.case.quantities import Count, Label, Quantity, refusal
 from frahm.case.section import CaseSection
 from frahm.errors import ParameterError, check_count
-from frahm.sweep.field_types import WINDOW, AxisValues, BaseCase, Place
+from frahm.sweep.field_types import WINDOW, AxisValues, BaseCase, Place, WholeAxisValues
 
 MOST_POINTS = 5_000_000
 _NOT_WITH_FATIGUE = ("wind_speed", "force", "detuning")
@@ -53,6 +54,10 @@ class Axes(CaseSection):
     )
     rho2: Annotated[Values, AxisValues("", "rho_2", above=0, name="rho2")] = _axis(
         "Mass ratio", "Mass of the absorber over mass of the pipe."
+    )
+    count: Annotated[Values, WholeAxisValues("", "N", at_least=1, at_most=MOST_ABSORBERS, name="count")] = _axis(
+        "Number of equal absorbers",
+        "In place of the one that varies, of the same mass, stiffness and damping together.",
     )
     kappa: Annotated[Values, AxisValues("1/(m^2 s^2)", "kappa", above=0, name="kappa")] = _axis(
         "Cubic stiffness", "Cubic stiffness of the absorber over mass of the pipe."
