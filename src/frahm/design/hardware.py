@@ -84,7 +84,7 @@ def _transverse_law(k3: float, k1: float, damping: float, length: float) -> Poly
 
 def hardware(
     case: Case, design: DesignedAbsorber, stroke: float, frequency: float, room: float | None = None,
-    stress: float | None = None,
+    stress: float | None = None, replaced: int | None = None,
 ) -> Hardware:  # fmt: skip
     """Sheet of a design on a case.
 
@@ -98,6 +98,8 @@ def hardware(
         Excitation frequency at the worst [rad/s].
     room, stress : float, optional
         Free length of a transverse spring [m] and shear stress in it [Pa]; by default four times the stroke, 400 MPa.
+    replaced : int, optional
+        Number of absorbers of the case in whose place the design comes; by default as many as it has.
 
     Returns
     -------
@@ -116,7 +118,8 @@ def hardware(
             replace(item, name=f"absorber {n}: {item.name}") for n, (own, _) in enumerate(sheets, 1) for item in own
         ]
         warnings = [w for n, (_, own) in enumerate(sheets, 1) for w in own]
-    return Hardware(tuple(items), tuple(dict.fromkeys((*left_out(case, design.count), *warnings))))
+    old = left_out(case, design.count if replaced is None else replaced)
+    return Hardware(tuple(items), tuple(dict.fromkeys((*old, *warnings))))
 
 
 def _sheet(
