@@ -260,3 +260,14 @@ def test_a_mixture_without_one_of_its_springs_is_a_point_of_the_space():
         units = space.units(damper[None])
     assert np.all(np.isfinite(units))
     assert units[0, 1] == units[0, 4] == pytest.approx(0.0)
+
+
+def test_the_sheet_of_several_says_which_absorber_a_warning_is_about():
+    pair = together([DesignedAbsorber(0.01, 0.24684, 25.63, 0.0059), DesignedAbsorber(0.01, 0.21288, 2.2147, 0.0052)])
+    sheet = hardware(CASE, pair, 0.0186, OMEGA)
+    about = [warning for warning in sheet.warnings if "sag" in warning or "wound" in warning]
+    assert sorted(warning[:12] for warning in about) == ["Absorber 1: ", "Absorber 1: ", "Absorber 2: ", "Absorber 2: "]
+    assert sum("two directions" in warning for warning in sheet.warnings) == 1
+    strokes = [item.basis for item in sheet.items if item.name.endswith("largest stroke")]
+    assert len(strokes) == 2
+    assert all("any of the absorbers" in basis for basis in strokes)
