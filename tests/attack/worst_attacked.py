@@ -135,8 +135,10 @@ def _disturbance(problem, random):
     scatter = problem.settings.scatter
     sizes = {name: getattr(scatter, name) for name in scatter.names}
     lock_in = not problem.within.over_wind
-    nominal = Disturbance(lock_in=lock_in, count=problem.settings.counts[-1])
-    return replace(nominal, **{name: 1 + s * random.uniform(-1, 1) for name, s in sizes.items()})
+    return replace(
+        Disturbance(lock_in=lock_in, others=problem.disturbances[0].others),
+        **{name: 1 + s * random.uniform(-1, 1) for name, s in sizes.items()},
+    )
 
 
 def _larger(motions, promise):

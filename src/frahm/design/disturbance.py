@@ -34,8 +34,8 @@ class Disturbance:
         On the force [-].
     lock_in : bool
         Whether the force grows with the square of `pipe_frequency`: the wind locks in at a speed in proportion to it.
-    count : int
-        Number of the absorbers, from the first, whose springs and dampers are off.
+    others : int
+        Number of the absorbers, from the last, that are not designed: their springs and dampers stay as they are.
     """
 
     pipe_frequency: float = _NOMINAL
@@ -44,7 +44,7 @@ class Disturbance:
     xi2: float = _NOMINAL
     force: float = _NOMINAL
     lock_in: bool = True
-    count: int = 1
+    others: int = 0
 
     @property
     def load(self) -> float:
@@ -65,13 +65,13 @@ class Disturbance:
 
     def of(self, system: System) -> System:
         """The system under it."""
-        if self == Disturbance(lock_in=self.lock_in, count=self.count):
+        if self == Disturbance(lock_in=self.lock_in, others=self.others):
             return system
         r = self.pipe_frequency
         reference = r * system.reference_frequency
         elements = list(system.elements)
-        if elements and (self.kappa != 1 or self.xi2 != 1):
-            for at, element in enumerate(elements[: self.count]):
+        if self.kappa != 1 or self.xi2 != 1:
+            for at, element in enumerate(elements[: max(len(elements) - self.others, 0)]):
                 elements[at] = Element(element.direction, element.law.scaled(self.kappa, self.xi2))
         return System(
             system.mass, r * self.pipe_damping * system.damping, r**2 * system.stiffness, self.load * system.forcing,
@@ -80,7 +80,7 @@ class Disturbance:
 
 
 def disturbances(
-    scatter: Scatter, quantile: float | None, samples: int, seed: int, *, lock_in: bool = True, count: int = 1
+    scatter: Scatter, quantile: float | None, samples: int, seed: int, *, lock_in: bool = True, others: int = 0
 ) -> list[Disturbance]:
     """The conditions a design is judged under; the nominal one first where the worst counts.
 
@@ -88,7 +88,7 @@ def disturbances(
     the box of all that scatters, uniform; where the worst counts also its corners and its centre.
     """
     names = scatter.names
-    nominal = Disturbance(lock_in=lock_in, count=count)
+    nominal = Disturbance(lock_in=lock_in, others=others)
     if not names:
         return [nominal]
     if names == ("pipe_frequency",) and quantile is None:

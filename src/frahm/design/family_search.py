@@ -93,13 +93,22 @@ def _tried(
             continue
         if best is None or (rival.verified, -rival.value) > (best.verified, -best.value):
             if best is not None and not best.verified:
-                work.discard(best, f"unverified: {' '.join(best.unverified[:1])}")
+                work.discard(best, _unverified(best))
             best = rival
             if family == work.settings.family:
                 work.found.with_margin = more
         else:
-            work.discard(rival, "it is not better")
+            work.discard(rival, _why_not(rival, best))
     return best, failed
+
+
+def _why_not(rival: Rival, best: Rival) -> str:
+    """Why a design is not the chosen one, as the end of a sentence."""
+    return "it is not better" if rival.verified or rival.value >= best.value else _unverified(rival)
+
+
+def _unverified(rival: Rival) -> str:
+    return f"unverified: {' '.join(rival.unverified[:1]).rstrip('.')}"
 
 
 def _unfit(work: DesignWork, design: DesignedAbsorber, checked: Verification, more: Verification | None) -> str:

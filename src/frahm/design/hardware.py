@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from frahm.case import Case, PolynomialLaw
@@ -84,7 +85,7 @@ def _transverse_law(k3: float, k1: float, damping: float, length: float) -> Poly
 
 def hardware(
     case: Case, design: DesignedAbsorber, stroke: float, frequency: float, room: float | None = None,
-    stress: float | None = None,
+    stress: float | None = None, replaced: int | None = None,
 ) -> Hardware:  # fmt: skip
     """Sheet of a design on a case.
 
@@ -98,6 +99,8 @@ def hardware(
         Excitation frequency at the worst [rad/s].
     room, stress : float, optional
         Free length of a transverse spring [m] and shear stress in it [Pa]; by default four times the stroke, 400 MPa.
+    replaced : int, optional
+        Number of absorbers of the case in whose place the design comes; by default as many as it has.
 
     Returns
     -------
@@ -108,27 +111,37 @@ def hardware(
         (textbook formulas, secondary). Coil springs that nobody can wind, and wires that would break, are left out:
         a warning says why and what to take instead.
     """
-    sheets = [_sheet(case, one, stroke, frequency, room, stress) for one in design.absorbers]
+    sheets = [_sheet(case, one, stroke, frequency, room, stress, design.count) for one in design.absorbers]
     if len(sheets) == 1:
         items, warnings = sheets[0]
     else:
         items = [
             replace(item, name=f"absorber {n}: {item.name}") for n, (own, _) in enumerate(sheets, 1) for item in own
         ]
-        warnings = [w for n, (_, own) in enumerate(sheets, 1) for w in own]
-    return Hardware(tuple(items), tuple(dict.fromkeys((*left_out(case, design.count), *warnings))))
+        warnings = _by_absorber([own for _, own in sheets])
+    old = left_out(case, design.count if replaced is None else replaced)
+    return Hardware(tuple(items), tuple(dict.fromkeys((*old, *warnings))))
+
+
+def _by_absorber(sheets: Sequence[Sequence[str]]) -> list[str]:
+    """Warnings of several absorbers: those that hold for all as they are, the others with the absorber's number."""
+    common = [warning for warning in sheets[0] if all(warning in own for own in sheets)]
+    single = [f"Absorber {n}: {w}" for n, own in enumerate(sheets, 1) for w in own if w not in common]
+    return [*single, *common]
 
 
 def _sheet(
-    case: Case, design: DesignedAbsorber, stroke: float, frequency: float, room: float | None, stress: float | None
-) -> tuple[list[HardwareItem], list[str]]:
-    """Lines and warnings of one absorber."""
+    case: Case, design: DesignedAbsorber, stroke: float, frequency: float, room: float | None, stress: float | None,
+    count: int,
+) -> tuple[list[HardwareItem], list[str]]:  # fmt: skip
+    """Lines and warnings of one absorber of so many, all of which are made for the largest stroke."""
+    whose = "of all attractors" if count == 1 else "of any of the absorbers and all attractors"
     host = case.pipe.mass
     mass, k1, k3, c = (host * value for value in (design.rho2, design.linear, design.kappa, design.xi2))
     items = [
         HardwareItem("moving mass", mass, "kg", "rho2 times the mass of the pipe"),
         HardwareItem("damper coefficient", c, "N s/m", "xi2 times the mass of the pipe"),
-        HardwareItem("largest stroke", stroke, "m", "largest relative peak of all attractors, force margin included"),
+        HardwareItem("largest stroke", stroke, "m", f"largest relative peak {whose}, force margin included"),
         HardwareItem("largest damper force", c * frequency * stroke, "N", "c Omega z, harmonic at the largest stroke"),
         HardwareItem("heat in the damper", 0.5 * c * (frequency * stroke) ** 2, "W", "c (Omega z)^2/2"),
     ]

@@ -102,20 +102,19 @@ class Host:
     Attributes
     ----------
     mass, damping, stiffness : ndarray, shape (n, n)
-    forcing, attachment, output : ndarray, shape (n,)
+    forcing, output : ndarray, shape (n,)
     frequency : float
         Reference frequency omega [rad/s].
     other_damping, other_stiffness : ndarray, shape (n, n)
         Of linear absorbers that stay as they are when the pipe is off.
     attachments : ndarray, shape (N, n)
-        The same of all absorbers.
+        Rows that give the displacement at every absorber.
     """
 
     mass: Floats
     damping: Floats
     stiffness: Floats
     forcing: Floats
-    attachment: Floats
     output: Floats
     frequency: float
     other_damping: Floats
@@ -123,10 +122,15 @@ class Host:
     attachments: Floats
 
     @functools.cached_property
+    def attachment(self) -> Floats:
+        """The row of the absorber where the governing mode moves most, the first of those alike, (n,)."""
+        return np.asarray(self.attachments[np.argmax(np.abs(self.attachments @ self._governing_mode))])
+
+    @functools.cached_property
     def ratios(self) -> Floats:
-        """Motion of the governing mode where each absorber hangs, over that where the first one does [-], (N,)."""
-        moves = self.attachments @ self._governing_mode
-        return np.asarray(moves / moves[0]) if moves[0] else np.ones(len(moves))
+        """Motion of the governing mode where each absorber hangs, over that at `attachment` [-], (N,); 1 at most."""
+        moves, most = self.attachments @ self._governing_mode, self.attachment @ self._governing_mode
+        return np.asarray(moves / most) if most else np.ones(len(moves))
 
     @functools.cached_property
     def modal_mass(self) -> float:
@@ -250,7 +254,6 @@ def host_of(system: System, count: int = 1) -> Host:
         damping=np.array(system.damping[keep]),
         stiffness=np.array(system.stiffness[keep]),
         forcing=np.array(system.forcing[rest]),
-        attachment=attachments[0],
         output=np.array(system.output[rest]),
         frequency=system.reference_frequency,
         other_damping=other_damping[keep],

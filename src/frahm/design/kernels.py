@@ -25,6 +25,7 @@ from frahm.compiled import kernel
 from frahm.polynomials import growth_rate, universal_roots
 from frahm.slow_flow.kernels import AVERAGED, ODD, characteristic, linear_parts, stability_class
 
+_DEEPEST = 0.9  # of what is seen: a parabola that falls lower joins what does not belong together
 _CUSP = -0.5 * math.sqrt(3.0)
 
 
@@ -221,7 +222,7 @@ def birth(onset, highest):
                 bend = onset[j - 1] - 2.0 * onset[j] + onset[j + 1]
                 slope = 0.5 * (onset[j + 1] - onset[j - 1])
                 least = onset[j] - (0.5 * slope * slope / bend if bend > 0.0 else 0.0)
-                birth = min(birth, least)
+                birth = min(birth, max(least, _DEEPEST * onset[j]))
         start = end + 1
     return birth
 

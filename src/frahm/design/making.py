@@ -18,7 +18,7 @@ def made(work: DesignWork) -> None:
     design, found, problem, settings = best.design, work.found, work.problem, work.settings
     stroke = max(best.relative_peak, more.relative_peak if more else 0.0)
     room, stress = settings.spring_length, settings.spring_stress
-    found.hardware = hardware(work.case, design, stroke, best.frequency, room, stress)
+    found.hardware = hardware(work.case, design, stroke, best.frequency, room, stress, settings.counts[-1])
     screening = problem.tier(settings.family, count=design.count).screening
     found.tolerance = tolerance_band(
         design, best.worst_pipe_peak, problem.modes_of, problem.disturbances, settings.seed

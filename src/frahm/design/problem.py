@@ -96,7 +96,7 @@ class Problem:
         )
         conditions = disturbances(
             settings.scatter, settings.quantile, settings.scatter_samples, settings.seed,
-            lock_in=not within.over_wind, count=settings.counts[-1],
+            lock_in=not within.over_wind, others=len(case.absorbers[settings.counts[-1] :]),
         )  # fmt: skip
         gaps = [absorber.stops.gap for absorber in case.absorbers[: settings.counts[-1]] if absorber.stops is not None]
         stroke = min([settings.most_stroke, *gaps])

@@ -1,9 +1,9 @@
 """Tier 1: many designs at once by the closed form of one harmonic, in threads.
 
-Absorbers that hang elsewhere than the first one are screened as if the pipe moved in its governing mode alone: one
-where that mode moves rho times as much is the same as one beside the first, with rho^2 times the mass, damping and
+Absorbers that hang elsewhere than the one where the governing mode moves most are screened as if the pipe moved in that
+mode alone: one where it moves rho times as much is the same as one beside that, with rho^2 times the mass, damping and
 linear stiffness, rho^4 times the cubic stiffness and rho^6 times that of the fifth power. On a pipe of one mode this is
-exact.
+exact. As rho is 1 at most, one at a node counts for nothing, as it should.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from frahm.design.kernels import amplitude_tables, births, largest_responses, sc
 from frahm.design.objective import ClimateMean
 
 _BATCH, _GROUPS = 2000, 6  # designs a thread takes at once, of one absorber and of several
+_AT_NODE = 1e-6  # least ratio of motions: an absorber that hangs where one is less feels nothing, and has a mass still
 _POWERS = np.array([2, 2, 4, 2, 6])  # of the ratio of motions that m, k1, k3, c, k5 grow with
 
 
@@ -117,16 +118,14 @@ class Screening:
         mode[:, 1] = host.modal_damping * c.pipe_frequencies * c.pipe_dampings
         mode[:, 2] = host.modal_mass
 
-        groups, given = self._groups(designs), c.first_force
+        groups, given, ratios = self._groups(designs), c.first_force, self._ratios
 
         def run(part: slice) -> None:
             if groups is None:
                 screened(*c.arrays, mode, designs[part], found[part], peaks[part])
             else:
                 rows = mode[: len(given.forces)]
-                group_responses(
-                    *given.arrays, rows, c.steps, groups[part], np.abs(host.ratios), found[part], peaks[part]
-                )
+                group_responses(*given.arrays, rows, c.steps, groups[part], ratios, found[part], peaks[part])
 
         self._in_threads(run, len(designs), groups is not None)
         parts = [(peaks, found), *(mode.responses(designs) for mode in self.others)]
@@ -153,11 +152,16 @@ class Screening:
         return np.asarray(np.sum([found, *others], axis=0))
 
     def _groups(self, designs: Floats) -> Floats | None:
-        """Designs (D, N, 5) as if all absorbers hung where the first one does; None for one absorber."""
+        """Designs (D, N, 5) as if all absorbers hung at one place; None for one absorber."""
         groups = np.reshape(designs, (len(designs), -1, 5))
         if groups.shape[1] == 1:
             return None
-        return np.asarray(groups * np.abs(self.host.ratios)[:, None] ** _POWERS)
+        return np.asarray(groups * self._ratios[:, None] ** _POWERS)
+
+    @property
+    def _ratios(self) -> Floats:
+        """Motion of the governing mode where each absorber hangs over that where it moves most [-], (N,)."""
+        return np.maximum(np.abs(self.host.ratios), _AT_NODE)
 
     def _in_threads(self, run: Callable[[slice], None], count: int, of_groups: bool = False) -> None:
         batch = _GROUPS if of_groups else _BATCH
@@ -177,18 +181,17 @@ def fold_ceilings(screening: Screening, designs: Floats) -> Floats:
     p = k1 - m Omega^2 and q = Omega c, n = 3/4 k3 |Z|^2: the smaller root is the upper fold of the pipe. The largest
     over all absorbers, disturbances and modes is taken. A part of the fifth power is left out.
     """
-    if designs.shape[1] > 5:
-        return np.fmax.reduce(
-            [fold_ceilings(screening, designs[:, at : at + 5]) for at in range(0, designs.shape[1], 5)]
-        )
-    moved = [mode for mode in (screening, *screening.others) if math.isfinite(mode.host.output_ratio)]
-    ceilings = np.array([_ceilings(mode.host, mode.conditions, designs) for mode in moved])
-    largest = np.max(ceilings, axis=0)
+    largest = np.zeros(len(designs))
+    for mode in (screening, *screening.others):
+        for at, ratio in enumerate(np.abs(mode.host.ratios)):
+            if ratio and math.isfinite(mode.host.output_ratio):
+                part = designs[:, 5 * at : 5 * at + 5]
+                largest = np.maximum(largest, _ceilings(mode.host, mode.conditions, part) / ratio)
     return np.where(largest > 0, largest, np.nan)
 
 
 def _ceilings(host: Host, conditions: Conditions, designs: Floats) -> Floats:
-    """Of one mode [m], (D,); 0 without a fold."""
+    """Of one absorber where one mode moves most [m], (D,); 0 without a fold."""
     m, k1, k3, damper, _ = designs.T[:, None, :]
     springs, dampers = conditions.absorber.T[:, :, None]
     W = host.frequency * conditions.pipe_frequencies[:, None]

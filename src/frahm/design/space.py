@@ -108,7 +108,8 @@ class DesignSpace:
         for one in range(self._drawings):
             for j, column in enumerate(self.columns):
                 plain = groups[:, one, column] / self._scale(j, total, masses[:, one])
-                value = plain if column == LINEAR else np.log(plain)
+                # what a corner of the family lacks has no logarithm
+                value = plain if column == LINEAR else np.log(np.maximum(plain, np.exp(self.lo[j])))
                 place = self._before + one * len(self.columns) + j
                 units[:, place] = (value - self.lo[j]) / (self.hi[j] - self.lo[j])
         return units

@@ -142,7 +142,7 @@ def is_grid(disturbances: Sequence[Disturbance]) -> bool:
     if len(disturbances) < 2:
         return False
     plain = all(
-        replace(one, pipe_frequency=1.0) == Disturbance(lock_in=one.lock_in, count=one.count) for one in disturbances
+        replace(one, pipe_frequency=1.0) == Disturbance(lock_in=one.lock_in, others=one.others) for one in disturbances
     )
     return plain and list(disturbances) == sorted(disturbances)
 
@@ -171,7 +171,7 @@ def _joined(found: dict[Disturbance, dict[int, WorstCase]], objective: Objective
     parts = [(one, mode) for one in grid for mode in found[one].values()]
     motions = [replace(mode.motion, unverified=_named(one, mode.unverified)) for one, mode in parts]
     nominal = next(
-        (tuple(found[one].values()) for one in grid if replace(one, lock_in=True, count=1) == Disturbance()), ()
+        (tuple(found[one].values()) for one in grid if replace(one, lock_in=True, others=0) == Disturbance()), ()
     )
     return Verification(
         value=float(objective.over_scatter(np.array([_value(found[one], objective) for one in grid]))),

@@ -147,7 +147,8 @@ def asked_rows(study: DesignStudy) -> list[tuple[str, ...]]:
             continue
         about = facts[field.path]
         values = field.value if isinstance(field.value, tuple) else (field.value,)
-        text = " ... ".join(number(value, 5) if isinstance(value, float) else str(value) for value in values)
+        between = ", " if field.path == "mass_shares" else " ... "
+        text = between.join(number(value, 5) if isinstance(value, float) else str(value) for value in values)
         if field.path.startswith("scatter.") and not field.value:
             continue
         rows.append((about.title, text, about.unit or "-", "" if field.given else "default"))
@@ -174,7 +175,8 @@ def _device(rival: Rival) -> str:
     design, name = rival.design, DEVICES[rival.name]
     if design is not None:
         name += f", {design.count} absorbers" if design.count > 1 else ""
-        name += f", fifth power {number(design.quintic)} 1/(m⁴ s²)" if design.quintic else ""
+        fifth = any(one.quintic for one in design.absorbers)
+        name += f", fifth power {_each(design, 'quintic')} 1/(m⁴ s²)" if fifth else ""
         name += f", at {number(design.position)} m" if design.position is not None else ""
     return name
 

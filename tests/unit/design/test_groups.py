@@ -1,6 +1,7 @@
 """Several absorbers at one place: every one-harmonic response, against independent searches and the single absorber."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -8,11 +9,13 @@ from scipy.optimize import fsolve
 
 import frahm
 from frahm.design import verified_designs
-from frahm.design.absorber import DesignedAbsorber, parameters_text, together, with_design
+from frahm.design.absorber import DesignedAbsorber, parameters_text, together, with_design, without_designed
 from frahm.design.disturbance import Disturbance
 from frahm.design.groups import group_births, group_responses
+from frahm.design.hardware import hardware
 from frahm.design.host import host_of
 from frahm.design.kernels import births, screened
+from frahm.design.problem import Problem
 from frahm.design.settings import DesignSettings
 from frahm.design.space import design_space
 from frahm.systems import build_system
@@ -218,3 +221,53 @@ def test_two_tuned_dampers_are_better_than_one_of_their_mass():
         x = np.linalg.solve(K - W * W * system.mass + 1j * W * C, system.forcing)
         largest = max(largest, abs(system.output @ x))
     assert best.worst_pipe_peak == pytest.approx(largest, rel=1e-5)
+
+
+def _with_beside(*more: dict) -> frahm.Case:
+    """The case with further absorbers."""
+    sink = CASE.to_dict()["absorbers"][0]
+    return frahm.load_case(CASE.to_dict() | {"absorbers": [sink, *({"mass": 2.0, **one} for one in more)]})
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_what_is_designed_scatters_and_what_stays_beside_it_does_not(count):
+    linear = {"kind": "linear", "stiffness": 40.0, "damping": 0.5}
+    case = _with_beside({"name": "second", "law": linear}, {"name": "third", "law": linear})
+    problem = Problem.of(case, DesignSettings(mass_ratio=0.02, count=(1, 2), scatter={"kappa": 0.1, "xi2": 0.2}))
+    off = problem.disturbances[1]
+    designed = problem.modes_of(together([DesignedAbsorber(0.02 / count, 0.2, 30.0, 0.01)] * count))[0].system
+    *changed, last = zip(off.of(designed).elements, designed.elements, strict=True)
+    assert len(changed) == count
+    assert all(new.law.damping == pytest.approx(0.8 * old.law.damping) for new, old in changed)
+    assert last[0].law.damping == last[1].law.damping
+    assert last[0].law.coefficients == last[1].law.coefficients
+    (bare,) = problem.modes(without_designed(case, 2))
+    assert [element.law.damping for element in off.of(bare.system).elements] == [0.5]
+
+
+def test_the_sheet_tells_what_every_absorber_replaced_had():
+    law = {"kind": "linear", "stiffness": 40.0, "damping": 0.5}
+    case = _with_beside({"name": "second", "law": law, "friction": {"force": 0.05, "speed": 0.01}})
+    sheet = hardware(case, DesignedAbsorber(0.02, 0.0, 367.38, 0.0117), 0.05, OMEGA, replaced=2)
+    assert any("dry friction" in warning for warning in sheet.warnings)
+
+
+def test_a_mixture_without_one_of_its_springs_is_a_point_of_the_space():
+    space = design_space(HOST, MASS, "mixed", DesignSettings(mass_ratio=0.02, count=2), 2)
+    damper = space.split(MASS * np.array([0.02, 0.46, 0.0, 0.0166, 0.0]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        units = space.units(damper[None])
+    assert np.all(np.isfinite(units))
+    assert units[0, 1] == units[0, 4] == pytest.approx(0.0)
+
+
+def test_the_sheet_of_several_says_which_absorber_a_warning_is_about():
+    pair = together([DesignedAbsorber(0.01, 0.24684, 25.63, 0.0059), DesignedAbsorber(0.01, 0.21288, 2.2147, 0.0052)])
+    sheet = hardware(CASE, pair, 0.0186, OMEGA)
+    about = [warning for warning in sheet.warnings if "sag" in warning or "wound" in warning]
+    assert sorted(warning[:12] for warning in about) == ["Absorber 1: ", "Absorber 1: ", "Absorber 2: ", "Absorber 2: "]
+    assert sum("two directions" in warning for warning in sheet.warnings) == 1
+    strokes = [item.basis for item in sheet.items if item.name.endswith("largest stroke")]
+    assert len(strokes) == 2
+    assert all("any of the absorbers" in basis for basis in strokes)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from frahm.case import Scatter
 from frahm.design import DesignSettings, Objective, verified_designs, with_design
 from frahm.design.absorber import DesignedAbsorber
 from frahm.design.disturbance import Disturbance
+from frahm.design.family_search import _why_not
 from frahm.design.host import host_of
 from frahm.design.problem import Problem
 from frahm.design.settings import settings_for
@@ -133,3 +135,10 @@ def test_a_mixture_in_its_ranges_is_never_a_corner_outside_of_them():
     mixed = [one for one in found if one.name == "mixed"]
     assert all(500 * (1 - 1e-6) <= one.design.kappa <= 5000 * (1 + 1e-6) for one in mixed)
     assert with_design(CASE, mixed[0].design).absorbers[0].law.kind == "polynomial"
+
+
+def test_a_smaller_value_that_is_not_verified_is_not_called_no_better():
+    chosen = SimpleNamespace(verified=True, value=2.0, unverified=())
+    doubtful = SimpleNamespace(verified=False, value=1.0, unverified=("A motion beyond the range is larger.",))
+    assert _why_not(doubtful, chosen) == "unverified: A motion beyond the range is larger"
+    assert _why_not(SimpleNamespace(verified=False, value=3.0, unverified=("Large.",)), chosen) == "it is not better"
