@@ -161,6 +161,8 @@ def _conclude(study: DesignStudy, folder: Path) -> None:
     typer.echo(study.headline)
     typer.echo(study.acceptance["sentence"])
     typer.echo(study.verdict)
+    if study.as_built_note:
+        typer.echo(study.as_built_note)
     typer.echo(f"Report: {folder / 'report.html'} (numbers: summary.json, the design as a case: best.yaml)")
     for doubt in study.unverified:
         typer.echo(f"frahm: {doubt}", err=True)

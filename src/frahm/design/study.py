@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 SIMPLEST_FIRST = ("none", "case", "tuned mass damper", "sink", "mixed")
 ALIKE = 0.995  # values that differ by less are one
+_AS_PROMISED, _SHORT_OF = 1.01, 0.01  # of the peak, and of the force margin: by how little more springs keep a promise
 NAMES = ("none", "case", "sink", "tuned mass damper", "mixed")
 
 
@@ -227,6 +228,22 @@ class DesignStudy:
         """What was chosen, and whether another device does better."""
         return headline(self.best, self.best_of_all, self.objective)
 
+    @property
+    def as_built_note(self) -> str:
+        """A sentence where the springs of the sheet keep less than was promised of the cubic law; empty if not."""
+        peak, margin, asked = self.as_built, self.as_built_margin, self.settings.force_margin
+        more = peak > _AS_PROMISED * self.best.worst_pipe_peak
+        less = margin < min(asked, self.best.force_margin) - _SHORT_OF
+        if not (more or less):  # NaN where no such springs were looked at
+            return ""
+        told = [f"the worst pipe peak is {readable.length(peak)}, not {readable.length(self.best.worst_pipe_peak)}"]
+        told = told if more else []
+        told += [f"they have a detached curve from {margin:.4g} times the force on"] if less else []
+        return (
+            f"With the exact force of the springs of the sheet {' and '.join(told)}: longer springs are nearer to the"
+            " cubic law (spring_length)."
+        )
+
     def ranking(self, error: float) -> list[str]:
         """Devices by the worst pipe peak where the pipe's frequency is this much of the nominal one, best first."""
         at = self.errors.index(error)
@@ -264,7 +281,7 @@ class DesignStudy:
                 for p in self.trade_off
             ],
             "hardware": hardware_rows(self.hardware),
-            "warnings": list(self.hardware.warnings) if self.hardware else [],
+            "warnings": [*(self.hardware.warnings if self.hardware else ()), *filter(None, [self.as_built_note])],
             "as_built": {"pipe_peak": self.as_built, "force_margin": self.as_built_margin},
             "tolerance": tolerance_row(self.tolerance),
             "sensitivities": [vars(item) for item in self.sensitivities],

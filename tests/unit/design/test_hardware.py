@@ -1,10 +1,13 @@
 """The hardware sheet against the exact geometry and printed numbers."""
 
+import math
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import frahm
-from frahm.design import DesignedAbsorber
+from frahm.design import DesignedAbsorber, DesignStudy
 from frahm.design.hardware import GRAVITY, as_built, hardware, transverse_pair_ratio
 
 CASE = frahm.load_case("jacket-pipe")
@@ -148,3 +151,18 @@ def test_what_a_design_leaves_out_of_the_case_is_said_and_the_springs_are_judged
     warnings = " ".join(hardware(case, SINK, 0.0133, 4.87).warnings)
     assert "gap of 0.02 m limits the stroke" in warnings
     assert "gravity" in warnings
+
+
+def _as_built_note(peak, margin):
+    known = SimpleNamespace(
+        as_built=peak, as_built_margin=margin, settings=SimpleNamespace(force_margin=1.05),
+        best=SimpleNamespace(worst_pipe_peak=0.00886, force_margin=1.052),
+    )  # fmt: skip
+    return DesignStudy.as_built_note.fget(known)
+
+
+def test_springs_that_keep_less_than_was_promised_are_said():
+    assert "10.1 mm, not 8.86 mm" in _as_built_note(0.01013, 1.06)
+    assert "from 0.998 times the force" in _as_built_note(0.00886, 0.998)
+    assert _as_built_note(0.00890, 1.045) == ""
+    assert _as_built_note(math.nan, math.nan) == ""
