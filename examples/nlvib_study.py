@@ -21,7 +21,7 @@ from frahm.design.finalists import finalists
 from frahm.design.host import host_of
 from frahm.design.objective import Objective
 from frahm.design.screening import Screening
-from frahm.design.search import Limits, TierOne
+from frahm.design.search import ClosedFormSearch, DesignLimits
 from frahm.design.space import design_space
 from frahm.design.verification import Verification, verification
 
@@ -96,8 +96,8 @@ def designed() -> DesignedAbsorber:
         host.conditions([Disturbance()], WIDE, 481, moving=False),
     )
     space = design_space(host, 1.0, "sink", DesignSettings(mass_ratio=REPORTED.rho2))
-    limits = Limits(MARGIN, math.inf, stable=False)
-    kept, _ = finalists(TierOne(screening, space, Objective(), limits), _modes_of, [Disturbance()], limits)
+    limits = DesignLimits(MARGIN, math.inf, stable=False)
+    kept, _ = finalists(ClosedFormSearch(screening, space, Objective(), limits), _modes_of, [Disturbance()], limits)
     return kept[0].design
 
 
