@@ -24,7 +24,7 @@ STROKE, GROWTH, BIRTH, CEILING, SPRINGS, PEAKS = range(6)  # columns of what is 
 _GRID = {2: (72, 72), 3: (24, 30, 26)}
 _SOBOL = 2**14  # designs of the first look at more parameters
 _SOBOL_OF_GROUPS = 2**11  # the same of several absorbers, whose closed form takes a hundred times as long
-_BESIDE = 0.04  # of the cube
+_BESIDE, _GENERATIONS_BESIDE = 0.04, 25  # of the cube, and of a search that begins beside what was best before
 _ASKED = 2**8  # of these: how many are asked for their detached curves
 _CONVERGED, _CONVERGED_GROUPS = 1e-6, 1e-3  # spread of the values over their mean that ends a search
 _MEMBERS, _GENERATIONS, _SEED = 36, 80, 1
@@ -186,6 +186,17 @@ class ClosedFormSearch:
         by_force = (corrections.peaks * judged[:, columns]).reshape(len(judged), -1, len(conditions.disturbances))
         return self.objective.of_peaks(by_force.max(axis=1), unstable, np.nan_to_num(judged[:, CEILING]))
 
+    @property
+    def is_asked_beside_1(self) -> bool:
+        """Whether it is asked about a factor on the force other than 1, too."""
+        return bool(np.any(self.screening.forces != 1))
+
+    def again(self, margin: float) -> ClosedFormSearch:
+        """As `reloaded`, for a search of its own that begins where this one came to."""
+        other = self.reloaded(margin)
+        other.ledger = Ledger(0, list(self.ledger.avoided), self.ledger.last)
+        return other
+
     def reloaded(self, margin: float) -> ClosedFormSearch:
         """The same with another margin on the force, and the grid judged before to start from."""
         other = copy.copy(self)
@@ -200,9 +211,9 @@ class ClosedFormSearch:
         from scipy.optimize import differential_evolution
 
         values = self._allowed(self.grid, self.predicted(self.grid_judged, limits, corrections))
-        members = self._members(values)
+        members, generations = self._members(values), _GENERATIONS
         if self.space.count > 1 and len(members) and self.ledger.last is not None:
-            members = self._beside(self.ledger.last, members)
+            members, generations = self._beside(self.ledger.last, members), _GENERATIONS_BESIDE
         if not len(members):
             return None
         worst = 10.0 * float(np.max(values[np.isfinite(values)]))
@@ -214,7 +225,7 @@ class ClosedFormSearch:
 
         tolerance = _CONVERGED if self.space.count == 1 else _CONVERGED_GROUPS
         found = differential_evolution(
-            objective, [(0.0, 1.0)] * self.space.size, init=members, maxiter=_GENERATIONS, vectorized=True,
+            objective, [(0.0, 1.0)] * self.space.size, init=members, maxiter=generations, vectorized=True,
             updating="deferred", polish=False, seed=_SEED, tol=tolerance, mutation=(0.4, 0.9), recombination=0.9,
         )  # fmt: skip
         self.ledger.last = found.x
