@@ -10,5 +10,8 @@ AS_LARGE = 1.01
 # larger one, are one attractor.
 ALIKE = 0.02
 
+# A design is better than another only if its value is below this share of the other's: what is nearer is the search.
+NO_BETTER = 0.995
+
 # Keeps a quotient or a logarithm finite where what it is taken of vanishes, and changes nothing else.
 TINY = 1e-300

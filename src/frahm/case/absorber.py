@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field, ValidationInfo, field_validator
@@ -185,3 +186,11 @@ class Absorber(CaseSection):
         if isinstance(self.law, CubicLaw):
             values["kappa"] = self.law.stiffness / host_mass
         return values
+
+
+def free_name(base: str, taken: Sequence[str]) -> str:
+    """The name, with a number behind it if it is taken."""
+    name, number = base, 2
+    while name in taken:
+        name, number = f"{base} {number}", number + 1
+    return name

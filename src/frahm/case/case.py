@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field, ValidationError, field_validator, model_validator
 
-from frahm.case.absorber import Absorber, CubicLaw, LinearLaw, PolynomialLaw
+from frahm.case.absorber import Absorber, CubicLaw, LinearLaw, PolynomialLaw, free_name
 from frahm.case.analysis import Analysis
 from frahm.case.climate import Climate
 from frahm.case.design import MOST_ABSORBERS, Design
@@ -276,12 +276,9 @@ class Case(CaseSection):
             return self
         taken = [absorber.name for absorber in self.absorbers]
         new = [_share(old, parts)]
-        for number in range(2, parts + 1):
-            label = f"{old.name} {number}"
-            while label in taken:
-                label += "'"
-            taken.append(label)
-            new.append(new[0].model_copy(update={"name": label}))
+        for _ in range(1, parts):
+            taken.append(free_name(old.name, taken))
+            new.append(new[0].model_copy(update={"name": taken[-1]}))
         return self._with({"absorbers": (*self.absorbers[:which], *new, *self.absorbers[which + 1 :])})
 
     def to_dict(self) -> dict[str, Any]:

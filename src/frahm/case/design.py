@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from frahm.case.quantities import Choice, Count, Quantity, QuantityList, QuantityOrNothing, Range, refusal
 from frahm.case.section import CaseSection
-from frahm.errors import ParameterError, nearest
+from frahm.errors import nearest
 
 FAMILIES = ("sink", "tuned", "mixed")
 OBJECTIVES = ("peak", "rms", "expected", "damage")
@@ -50,17 +50,11 @@ class CountOrRange(Count):
         if isinstance(value, list | tuple):
             if len(value) != 2:
                 raise refusal(self.allowed)
-            lo, hi = (self._one(item) for item in value)
+            lo, hi = (int(super(CountOrRange, self).read(item)) for item in value)
             if lo > hi:
                 raise refusal(self.allowed)
             return lo if lo == hi else (lo, hi)
-        return self._one(value)
-
-    def _one(self, value: Any) -> int:
-        try:
-            return int(super().read(value))
-        except ParameterError:
-            raise refusal(self.allowed) from None
+        return super().read(value)
 
     def json_schema(self) -> dict[str, Any]:
         """JSON schema."""
@@ -146,7 +140,7 @@ class Design(CaseSection):
     mass_ratio: Annotated[float | _Pair | None, NumberOrRange("", "rho2", above=0, at_most=1)] = Field(
         default=None,
         title="Mass ratio",
-        description="Mass of the absorber over that of the pipe, or a range of it; left out: the case's, or 0.02.",
+        description="Mass of all of them together over that of the pipe, or a range; left out: the case's, or 0.02.",
     )
     count: Annotated[int | tuple[int, int], CountOrRange(at_least=1, at_most=MOST_ABSORBERS)] = Field(
         default=1,

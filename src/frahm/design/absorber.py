@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from frahm.case import Absorber, Case, CubicLaw, LinearLaw, PolynomialLaw
+from frahm.case.absorber import free_name
 from frahm.errors import ParameterError, check_number
 
 if TYPE_CHECKING:
@@ -176,18 +177,10 @@ def with_design(case: Case, design: DesignedAbsorber, name: str | None = None, r
         changes: dict[str, Any] = {"mass": host * one.rho2, "law": one.law(host)}
         if name is not None or not known:
             base = name or (case.absorbers[0].name if case.absorbers else Absorber.model_fields["name"].default)
-            changes["name"] = _free_name(base, [*taken, *(other.name for other in new)])
+            changes["name"] = free_name(base, [*taken, *(other.name for other in new)])
         changes |= {} if one.position is None else {"position": one.position}
         new.append(Absorber(**(kept | changes)))
     return Case(**_fields(case, (*new, *others)))
-
-
-def _free_name(base: str, taken: Sequence[str]) -> str:
-    """The name, with a number behind it if it is taken."""
-    name, number = base, 2
-    while name in taken:
-        name, number = f"{base} {number}", number + 1
-    return name
 
 
 def without_designed(case: Case, count: int = 1) -> Case:

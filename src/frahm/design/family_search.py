@@ -10,10 +10,11 @@ from frahm.design.absorber import DesignedAbsorber
 from frahm.design.families import DEVICES, MIXED, devices
 from frahm.design.finalists import Finalist, finalists
 from frahm.design.search import DesignLimits
-from frahm.design.study import ALIKE, Rival
+from frahm.design.study import Rival
 from frahm.design.verification import Verification
 from frahm.design.work import DesignWork, rival_of
 from frahm.errors import ParameterError
+from frahm.tolerances import NO_BETTER
 
 _MOST_FINALISTS = 4
 _WORSE, _WORSE_MEAN = 1.25, 2.0  # verified over expected value from where on a finalist is worse than it looked
@@ -34,7 +35,7 @@ def best_of_family(work: DesignWork, family: str) -> Rival | None:
         if found is None:
             continue
         work.found.by_count.append(found)
-        better = best is None or (found.verified, -found.value) > (best.verified, -ALIKE * best.value)
+        better = best is None or (found.verified, -found.value) > (best.verified, -NO_BETTER * best.value)
         best = found if better else best
     return best
 

@@ -18,6 +18,7 @@ from frahm.design.hardware import Hardware
 from frahm.design.objective import Objective
 from frahm.design.robustness import Sensitivity, ToleranceBand
 from frahm.design.settings import DesignSettings
+from frahm.tolerances import NO_BETTER
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from frahm.case import Case
 
 SIMPLEST_FIRST = ("none", "case", "tuned mass damper", "sink", "mixed")
-ALIKE = 0.995  # values that differ by less are one
 _AS_PROMISED, _SHORT_OF = 1.01, 0.01  # of the peak, and of the force margin: by how little more springs keep a promise
 NAMES = ("none", "case", "sink", "tuned mass damper", "mixed")
 
@@ -236,8 +236,8 @@ class DesignStudy:
         less = margin < min(asked, self.best.force_margin) - _SHORT_OF
         if not (more or less):  # NaN where no such springs were looked at
             return ""
-        told = [f"the worst pipe peak is {readable.length(peak)}, not {readable.length(self.best.worst_pipe_peak)}"]
-        told = told if more else []
+        promised = readable.length(self.best.worst_pipe_peak)
+        told = [f"the worst pipe peak is {readable.length(peak)}, not {promised}"] if more else []
         told += [f"they have a detached curve from {margin:.4g} times the force on"] if less else []
         return (
             f"With the exact force of the springs of the sheet {' and '.join(told)}: longer springs are nearer to the"
@@ -336,7 +336,7 @@ class DesignStudy:
 def first_of(rivals: Sequence[Rival]) -> Rival:
     """Best verified device; of those as good, the simplest."""
     best = min(rivals, key=lambda rival: (not rival.verified, rival.value))
-    alike = [one for one in rivals if one.verified == best.verified and ALIKE * one.value <= best.value]
+    alike = [one for one in rivals if one.verified == best.verified and NO_BETTER * one.value <= best.value]
     return min(alike, key=lambda rival: SIMPLEST_FIRST.index(rival.name))
 
 
@@ -344,7 +344,7 @@ def headline(best: Rival, first: Rival, objective: Objective) -> str:
     """What was chosen, and whether another device does better."""
     many = "" if best.count == 1 else f", {best.count} absorbers"
     text = f"Best {best.name}{many}{_corner(best)}: {objective.title} {objective.shown(best.value)}"
-    if first.name in (best.name, "none") or not first.value < ALIKE * best.value:
+    if first.name in (best.name, "none") or not first.value < NO_BETTER * best.value:
         return f"{text}; no device compared does better."
     return f"{text}; the {first.name} does better, {objective.shown(first.value)}, and is not what was asked for."
 

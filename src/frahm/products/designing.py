@@ -16,11 +16,11 @@ from frahm.products.served import ServedMember, served_member
 from frahm.products.study import ProductStudy
 from frahm.screening import FAIL as FAILS_ALONE
 from frahm.screening import MemberScreen, screen_members, share
+from frahm.tolerances import NO_BETTER
 
 Progress = Callable[[str, int, int], None]
 MOST_KINDS = 12
 _ORDER = ("tuned", "sink", "mixed")  # the tuned product is what the others are held against
-_NO_BETTER = 0.995  # of the rival's utilisation: what is above it is no better
 
 
 def design_products(
@@ -159,7 +159,7 @@ class _Work:
 
     def _checked(self, product: Product, rival: Product | None, done: int) -> Product:
         """The product with its members against all attractors, those expected to be used most first."""
-        bar = _NO_BETTER * rival.worst if rival else math.inf
+        bar = NO_BETTER * rival.worst if rival else math.inf
         lost = ""
         fitted: list[FittedMember] = []
         for number, one in enumerate(product.members):

@@ -10,9 +10,7 @@ from __future__ import annotations
 
 import functools
 import math
-import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,14 +18,15 @@ from scipy.optimize import differential_evolution
 from scipy.stats import qmc
 
 from frahm.arrays import Floats
+from frahm.design.work import in_threads
 from frahm.products.cover import best_rows
 from frahm.products.served import ServedMember, hull
+from frahm.tolerances import NO_BETTER
 
 _LIBRARY, _LEAST, _MOST_PAIRS = 4096, 16, 256  # devices of a library; of one pair at least; pairs
 _POPULATION, _DRAWN = 24, 32  # devices of an evolution, and those drawn for it: a power of two
 _GENERATIONS, _CONVERGED, _SEED = 50, 1e-3, 1
 _ROUNDS = 5  # of making kinds and taking them
-_BETTER = 0.995  # a product that is less than this much better is no better
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +83,7 @@ class ProductSearch:
         first = [self._taken(devices[list(rows)], table[list(rows)]), self._by_frequency(count)]
         begins = [*first, *(self._split(one) for one in starts if len(one.devices) < count)]
         found = [*starts, *(self._settled(one) for one in begins)]
-        return functools.reduce(lambda best, one: one if one.worst < _BETTER * best.worst else best, found)
+        return functools.reduce(lambda best, one: one if one.worst < NO_BETTER * best.worst else best, found)
 
     @functools.cached_property
     def library(self) -> tuple[Floats, Floats]:
@@ -102,7 +101,7 @@ class ProductSearch:
 
     def _table(self, devices: Floats, of: Sequence[int] | np.ndarray | None = None) -> Floats:
         members = self.members if of is None else [self.members[at] for at in of]
-        return np.column_stack(_in_threads(lambda member: member.utilisation(devices), members))
+        return np.column_stack(in_threads(lambda member: member.utilisation(devices), members))
 
     def _taken(self, devices: Floats, table: Floats | None = None) -> Expected:
         """Every member takes the kind that suits it best; kinds that none takes are left out."""
@@ -135,7 +134,7 @@ class ProductSearch:
         for _ in range(_ROUNDS):
             found = self._taken(np.concatenate([self._made(best.takes, best.devices), best.devices]))
             found = self._fewest(found, len(best.devices))
-            if not found.worst < _BETTER * best.worst:
+            if not found.worst < NO_BETTER * best.worst:
                 return found if found.worst < best.worst else best
             best = found
         return best
@@ -184,10 +183,3 @@ _HUGE = 1e30  # utilisation of what is not allowed
 def _as_heavy(devices: Floats, mass: float) -> Floats:
     """Devices of another mass [kg] with the same frequencies and damping ratios; no spring is a very soft one."""
     return np.maximum(devices * (mass / devices[:, :1]), np.finfo(float).tiny)
-
-
-def _in_threads(function: Callable[[ServedMember], Floats], members: Sequence[ServedMember]) -> list[Floats]:
-    if len(members) == 1:
-        return [function(members[0])]
-    with ThreadPoolExecutor(os.cpu_count() or 1) as pool:
-        return list(pool.map(function, members))

@@ -11,8 +11,7 @@ from frahm.products.served import ServedMember
 from frahm.screening import FAIL as FAILS_ALONE
 from frahm.screening import PASS, MemberScreen, share
 from frahm.screening.screen import provenance
-
-_AS_GOOD = 0.995  # what is less than this much better is no better
+from frahm.tolerances import NO_BETTER
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +58,7 @@ class ProductStudy:
             return min(passing, key=lambda one: (len(one.kinds), one.worst))
         best: Product | None = None
         for one in own:  # fewer kinds come first, and the tuned ones before the others
-            better = best is None or (not best.complete, _AS_GOOD * best.worst) > (not one.complete, one.worst)
+            better = best is None or (not best.complete, NO_BETTER * best.worst) > (not one.complete, one.worst)
             best = one if better else best
         return best
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from frahm.analysis import plain
 from frahm.files import write_text
 from frahm.plotting.products import save_products_figure
 from frahm.products import FAIL, NOT_VERIFIED, PASS, ProductStudy
+from frahm.report.columns import Column, heads, of, rows_of
 from frahm.report.environment import template
 from frahm.report.numbers import number
 from frahm.report.report import REPORT_FILE, figures_folder, image_address
@@ -20,15 +21,6 @@ from frahm.screening import share
 Row = Mapping[str, Any]
 _MARKS = {FAIL: "fail", NOT_VERIFIED: "unverified", PASS: "pass"}
 _UNKNOWN = "-"
-PRODUCT_HEAD = ["Product", "Worst utilisation", "Binds", "By the closed form", "Verdict"]
-KIND_HEAD = [
-    "Kind", "Mass [kg]", "Linear spring [N/m]", "Cubic spring [N/m\N{SUPERSCRIPT THREE}]", "Damper [N s/m]",
-    "Own frequency [Hz]", "Members",
-]  # fmt: skip
-MEMBER_HEAD = [
-    "Member", "f [Hz]", "Kind", "Mass ratio [%]", "Without", "With", "By the closed form", "Peak [mm]", "Stroke [mm]",
-    "Stress range [MPa]", "Damage", "Verdict",
-]  # fmt: skip
 
 
 def write_products_report(study: ProductStudy, folder: str | Path) -> Path:
@@ -59,12 +51,12 @@ def render_products_report(study: ProductStudy, images: dict[str, str]) -> str:
         images=images,
         plots={},
         best=best,
-        product_head=PRODUCT_HEAD,
-        products=[_product_row(one) for one in study.products],
-        kind_head=KIND_HEAD,
-        kinds=[] if best is None else [_kind_row(kind) for kind in plain(best.row())["kinds"]],
-        member_head=MEMBER_HEAD,
-        members=[] if best is None else [_member_row(row) for row in plain(best.row())["members"]],
+        product_head=heads(_PRODUCTS),
+        products=rows_of(_PRODUCTS, study.products),
+        kind_head=heads(_KINDS),
+        kinds=[] if best is None else rows_of(_KINDS, plain(best.row())["kinds"]),
+        member_head=heads(_MEMBERS),
+        members=[] if best is None else rows_of(_MEMBERS, plain(best.row())["members"]),
         unverified=study.unverified,
         others=[(one.title, text) for one in study.products if one is not best for text in one.unverified],
         not_served=study.not_served,
@@ -80,29 +72,46 @@ def _used(value: float | None) -> str:
     return _UNKNOWN if value is None else share(value)
 
 
-def _product_row(product: Any) -> tuple[Any, ...]:
-    row = plain(product.row())
-    word = PASS if product.passes else FAIL if product.fails else NOT_VERIFIED
-    return product.title, _used(row["worst_utilisation"]), row["binds"], _used(row["expected_worst"]), _status(word)
+def _word(product: Any) -> str:
+    return PASS if product.passes else FAIL if product.fails else NOT_VERIFIED
 
 
-def _kind_row(row: Row) -> tuple[str, ...]:
-    def some(value: float | None) -> str:
-        return number(value, 4) if value else _UNKNOWN
-
-    return (
-        str(row["kind"]), number(row["mass"], 4), some(row["linear"]), some(row["kappa"]), number(row["xi2"], 4),
-        some(row["frequency_hz"]), ", ".join(row["members"]),
-    )  # fmt: skip
+def _some(value: float | None) -> str:
+    return number(value, 4) if value else _UNKNOWN
 
 
-def _member_row(row: Row) -> tuple[Any, ...]:
-    def times(value: float | None, factor: float) -> str:
-        return _UNKNOWN if value is None else number(factor * value, 3)
+def _in_parts(part: float) -> Callable[[float | None], str]:
+    """Numbers in another unit, so much of the SI one."""
+    return lambda value: _UNKNOWN if value is None else number(value / part, 3)
 
-    return (
-        row["member"], number(row["natural_frequency_hz"], 3), str(row["kind"]), times(row["mass_ratio"], 100),
-        _used(row["utilisation_without"]), _used(row["utilisation"]), _used(row["expected"]),
-        times(row["pipe_peak"], 1e3), times(row["stroke"], 1e3), times(row["stress_range"], 1e-6),
-        times(row["damage"], 1.0), _status(row["verdict"]),
-    )  # fmt: skip
+
+_PRODUCTS = (
+    Column("Product", lambda product: product.title),
+    Column("Worst utilisation", lambda product: plain(product.row())["worst_utilisation"], _used),
+    Column("Binds", lambda product: plain(product.row())["binds"]),
+    Column("By the closed form", lambda product: plain(product.row())["expected_worst"], _used),
+    Column("Verdict", _word, _status),
+)
+_KINDS = (
+    Column("Kind", of("kind")),
+    Column("Mass [kg]", of("mass"), number),
+    Column("Linear spring [N/m]", of("linear"), _some),
+    Column("Cubic spring [N/m\N{SUPERSCRIPT THREE}]", of("kappa"), _some),
+    Column("Damper [N s/m]", of("xi2"), number),
+    Column("Own frequency [Hz]", of("frequency_hz"), _some),
+    Column("Members", of("members"), ", ".join),
+)
+_MEMBERS = (
+    Column("Member", of("member")),
+    Column("f [Hz]", of("natural_frequency_hz"), _in_parts(1.0)),
+    Column("Kind", of("kind")),
+    Column("Mass ratio [%]", of("mass_ratio"), _in_parts(1e-2)),
+    Column("Without", of("utilisation_without"), _used),
+    Column("With", of("utilisation"), _used),
+    Column("By the closed form", of("expected"), _used),
+    Column("Peak [mm]", of("pipe_peak"), _in_parts(1e-3)),
+    Column("Stroke [mm]", of("stroke"), _in_parts(1e-3)),
+    Column("Stress range [MPa]", of("stress_range"), _in_parts(1e6)),
+    Column("Damage", of("damage"), _in_parts(1.0)),
+    Column("Verdict", of("verdict"), _status),
+)

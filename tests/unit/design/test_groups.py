@@ -12,6 +12,8 @@ from frahm.design import verified_designs
 from frahm.design.absorber import DesignedAbsorber, parameters_text, together, with_design, without_designed
 from frahm.design.disturbance import Disturbance
 from frahm.design.groups import group_births, group_responses
+from frahm.design.groups.crossings import responses
+from frahm.design.groups.curves import curves, room_for
 from frahm.design.hardware import hardware
 from frahm.design.host import host_of
 from frahm.design.kernels import births, screened
@@ -271,3 +273,22 @@ def test_the_sheet_of_several_says_which_absorber_a_warning_is_about():
     strokes = [item.basis for item in sheet.items if item.name.endswith("largest stroke")]
     assert len(strokes) == 2
     assert all("any of the absorbers" in basis for basis in strokes)
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("count", [2, 3, 5])
+def test_all_responses_are_those_of_the_search_of_harmonic_balance(count, seed):
+    rng = np.random.default_rng(10 * count + seed)
+    sinks = [(10 ** rng.uniform(2, 3.3), 10 ** rng.uniform(-2.7, -2), rng.uniform(0.5, 1) * 0.03 / count)
+             for _ in range(count)]  # fmt: skip
+    detuning = rng.uniform(-0.1, 0.2)
+    (W,), (a,), (u,), (b,), (x,) = (row[0] for row in _conditions([detuning]).arrays[:5])
+    group, work = _rows(sinks)[0], room_for(count)
+    hits, squares = np.empty((4 * 3**count, 3)), np.empty((4 * 3**count, count))
+    number = curves(W, a, abs(u) ** 2, abs(u) ** 2, group, 1.0, 1.0, work)
+    found = hits[: responses(number, abs(u) ** 2, a, work, hits, squares)]
+    total = found[:, 1] + 1j * found[:, 2]
+    closed = np.sort(abs(x + b * total * u / (1 - a * total)))
+    design = together([DesignedAbsorber(rho2, 0.0, kappa, xi2) for kappa, xi2, rho2 in sinks])
+    known = frahm.periodic_responses(with_design(CASE, design), detuning=detuning, harmonics=1)
+    np.testing.assert_allclose(closed, sorted(one.pipe_peak for one in known), rtol=2e-3)

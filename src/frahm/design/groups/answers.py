@@ -87,7 +87,7 @@ def reaction(N, law):
 
 @kernel
 def prepare(W, group, spring, damping, laws):
-    """Fill `laws` (N, 9) with what the absorbers are at Omega = W; returns the largest sum |R|."""
+    """Fill `laws` (N, 10) with what the absorbers are at Omega = W; returns the largest sum |R|."""
     total = 0.0
     for i in range(group.shape[0]):
         m, k1, k3, damper, k5 = group[i]

@@ -82,7 +82,7 @@ def _narrowed(choice, left, right, a, laws):
         before, after = _nearest(begin, there), _nearest(there, end)
         nearer = abs(begin + before * (there - begin)) < abs(there + after * (end - there))
         if nearer:
-            right, end = middle + 0.3 * (right - middle), end
+            right = middle + 0.3 * (right - middle)
             end = _ratio(choice, right, a, laws)
         else:
             left = left + 0.7 * (middle - left)
