@@ -119,7 +119,7 @@ class ClosedFormSearch:
             self.grid = np.array(list(itertools.product(*axes)))
             self.step = 1.0 / (np.array(_GRID[self.space.size]) - 1)
         else:
-            number = _SOBOL if self.space.count == 1 else _SOBOL_OF_GROUPS
+            number = _SOBOL if self.space.is_quick else _SOBOL_OF_GROUPS
             self.grid = qmc.Sobol(self.space.size, seed=_SEED).random(number)
             self.step = np.full(self.space.size, number ** (-1 / self.space.size))
         if len(self.known):
@@ -223,7 +223,7 @@ class ClosedFormSearch:
             peaks = self._allowed(units.T, peaks)
             return np.where(np.isfinite(peaks), peaks, worst)
 
-        tolerance = _CONVERGED if self.space.count == 1 else _CONVERGED_GROUPS
+        tolerance = _CONVERGED if self.space.is_quick else _CONVERGED_GROUPS
         found = differential_evolution(
             objective, [(0.0, 1.0)] * self.space.size, init=members, maxiter=generations, vectorized=True,
             updating="deferred", polish=False, seed=_SEED, tol=tolerance, mutation=(0.4, 0.9), recombination=0.9,

@@ -77,6 +77,11 @@ class DesignSpace:
         """Number of free parameters."""
         return self._before + self._drawings * len(self.columns)
 
+    @property
+    def is_quick(self) -> bool:
+        """Whether a design takes the closed form little time: one absorber, or linear ones, which have one response."""
+        return self.count == 1 or not {CUBIC, QUINTIC} & set(self.columns)
+
     def designs(self, unit: Floats) -> Floats:
         """Designs (D, 5 N) in SI units at points (D, d) of the unit cube."""
         unit = np.clip(unit, 0.0, 1.0)
